@@ -9,12 +9,15 @@
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -91,7 +94,15 @@ static Status run(int argc, char **argv)
   add_bench(app, status);
   add_view(app);
   try {
-    app.parse(argc, argv);
+    // Compilers have these names of more than one letter after one dash, and CLI11 has not.
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    for (std::string &argument : arguments) {
+      if (argument == "-MD" || argument == "-MF" || argument == "-MT") {
+        argument.insert(0, 1, '-');
+      }
+    }
+    std::ranges::reverse(arguments);
+    app.parse(std::move(arguments));
     return status;
   }
   catch (const CLI::ParseError &error) {

@@ -1,62 +1,51 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shader_files.hh"
 
-#include <array>
+#include <fmt/format.h>
 
 namespace gnomon::cli {
 
 namespace fs = std::filesystem;
 
-gpu::IncludePath include_path(std::vector<fs::path> folders)
-{
-  return [folders = std::move(folders)](std::string_view named, std::string_view includer) {
-    const fs::path beside = (fs::path(includer).parent_path() / named).lexically_normal();
-    if (fs::exists(beside)) {
-      return beside.string();
-    }
-    for (const fs::path &folder : folders) {
-      const fs::path file = (folder / named).lexically_normal();
-      if (fs::exists(file)) {
-        return file.string();
-      }
-    }
-    return beside.string();
-  };
-}
-
 namespace {
 
 struct Ending {
-  gpu::ShaderStage stage;
-  std::string_view name;
+  shader_check::Stage stage;
+  std::size_t size;
 };
 
-constexpr std::array<Ending, 9> endings = {{{gpu::ShaderStage::Vertex, ".vert"},
-                                            {gpu::ShaderStage::Vertex, ".vert.glsl"},
-                                            {gpu::ShaderStage::Vertex, "_vert.glsl"},
-                                            {gpu::ShaderStage::Geometry, ".geom"},
-                                            {gpu::ShaderStage::Geometry, ".geom.glsl"},
-                                            {gpu::ShaderStage::Geometry, "_geom.glsl"},
-                                            {gpu::ShaderStage::Fragment, ".frag"},
-                                            {gpu::ShaderStage::Fragment, ".frag.glsl"},
-                                            {gpu::ShaderStage::Fragment, "_frag.glsl"}}};
-
-const Ending *ending_of(std::string_view path)
+std::optional<Ending> ending_of(std::string_view path)
 {
-  for (const Ending &ending : endings) {
-    if (path.ends_with(ending.name)) {
-      return &ending;
+  for (const shader_check::StageName &stage : shader_check::stage_names()) {
+    for (const std::string &ending : {fmt::format(".{}", stage.ending), fmt::format(".{}.glsl", stage.ending),
+                                      fmt::format("_{}.glsl", stage.ending)}) {
+      if (path.ends_with(ending)) {
+        return Ending{stage.stage, ending.size()};
+      }
     }
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<gpu::ShaderStage> stage_of(const fs::path &path)
+std::optional<shader_check::Stage> stage_of(const fs::path &path)
 {
-  const Ending *ending = ending_of(path.string());
-  return ending == nullptr ? std::nullopt : std::optional(ending->stage);
+  const std::optional<Ending> ending = ending_of(path.string());
+  return ending ? std::optional(ending->stage) : std::nullopt;
+}
+
+std::string with_stage(const fs::path &path, shader_check::Stage stage)
+{
+  std::string text = path.string();
+  const std::optional<Ending> ending = ending_of(text);
+  if (!ending) {
+    return {};
+  }
+  // A dot or an underscore precedes the name of the stage.
+  const std::string_view name = shader_check::stage_names()[std::size_t(ending->stage)].ending;
+  const std::string_view wanted = shader_check::stage_names()[std::size_t(stage)].ending;
+  return text.replace(text.size() - ending->size + 1, name.size(), wanted);
 }
 
 bool is_surface_function(const fs::path &path)
@@ -68,8 +57,8 @@ bool is_surface_function(const fs::path &path)
 std::string stem_of(const fs::path &path)
 {
   const std::string text = path.string();
-  const Ending *ending = ending_of(text);
-  return ending == nullptr ? text : text.substr(0, text.size() - ending->name.size());
+  const std::optional<Ending> ending = ending_of(text);
+  return ending ? text.substr(0, text.size() - ending->size) : text;
 }
 
 }  // namespace gnomon::cli

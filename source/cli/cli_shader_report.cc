@@ -20,20 +20,21 @@ struct Group {
   std::vector<const shader_check::CheckMessage *> all;
 };
 
+/** In the order of their first messages. */
 std::vector<Group> groups_of(const ShaderReport &report)
 {
   using Key = std::tuple<std::string_view, int, shader_check::Severity, std::string_view, std::string_view>;
-  std::map<Key, Group> groups;
+  std::map<Key, std::size_t> indices;
+  std::vector<Group> groups;
   for (const shader_check::CheckMessage &message : report.messages) {
-    Group &group = groups[Key(message.file, message.line, message.severity, message.rule, message.text)];
-    group.first = group.first == nullptr ? &message : group.first;
-    group.all.push_back(&message);
+    const auto [entry, is_new] = indices.try_emplace(
+        Key(message.file, message.line, message.severity, message.rule, message.text), groups.size());
+    if (is_new) {
+      groups.push_back({&message, {}});
+    }
+    groups[entry->second].all.push_back(&message);
   }
-  std::vector<Group> list;
-  for (auto &[key, group] : groups) {
-    list.push_back(std::move(group));
-  }
-  return list;
+  return groups;
 }
 
 std::string join(const std::set<std::string> &words, std::string_view separator)
@@ -110,6 +111,14 @@ std::string to_text(const ShaderReport &report)
   text += fmt::format("{} programs, {} variants, {}: {} errors, {} warnings, {:.2f} s\n", report.program_count,
                       report.variant_count, join(targets, " and "), count(groups, shader_check::Severity::Error),
                       count(groups, shader_check::Severity::Warning), report.seconds);
+  for (const shader_check::TargetName &target : shader_check::check_targets()) {
+    const auto is_chosen = [&](const ShaderReport::Choice &choice) { return choice.target == target.target; };
+    const auto first = std::ranges::find_if(report.choices, is_chosen);
+    if (first != report.choices.end()) {
+      text += fmt::format("{}: from the files of {} programs; {}: {}\n", target.text,
+                          std::ranges::count_if(report.choices, is_chosen), first->program, first->reason);
+    }
+  }
   return text;
 }
 
@@ -123,18 +132,24 @@ std::string to_json(const ShaderReport &report)
       places.push_back({{"shader", m->shader}, {"variant", m->variant}, {"target", to_string(m->target)}});
     }
     const shader_check::CheckMessage &m = *group.first;
-    messages.push_back({{"severity", to_string(m.severity)},
-                        {"file", m.file},
-                        {"line", m.line},
-                        {"text", m.text},
-                        {"rule", m.rule},
-                        {"where", std::move(places)}});
+    json message = {
+        {"severity", to_string(m.severity)}, {"file", m.file}, {"line", m.line}, {"text", m.text}, {"rule", m.rule},
+        {"where", std::move(places)}};
+    if (m.column > 0) {
+      message["column"] = m.column;
+    }
+    messages.push_back(std::move(message));
+  }
+  json choices = json::array();
+  for (const ShaderReport::Choice &choice : report.choices) {
+    choices.push_back({{"program", choice.program}, {"target", to_string(choice.target)}, {"reason", choice.reason}});
   }
   return dump({{"programs", report.program_count},
                {"variants", report.variant_count},
                {"errors", count(groups, shader_check::Severity::Error)},
                {"warnings", count(groups, shader_check::Severity::Warning)},
                {"seconds", report.seconds},
+               {"targets", std::move(choices)},
                {"messages", std::move(messages)}});
 }
 
@@ -147,8 +162,12 @@ std::string to_sarif(const ShaderReport &report)
   json results = json::array();
   for (const Group &group : groups_of(report)) {
     const shader_check::CheckMessage &m = *group.first;
+    json region = {{"startLine", m.line}};
+    if (m.column > 0) {
+      region["startColumn"] = m.column;
+    }
     const json location = {
-        {"physicalLocation", {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", {{"startLine", m.line}}}}}};
+        {"physicalLocation", {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", std::move(region)}}}};
     results.push_back({{"ruleId", m.rule},
                        {"level", to_string(m.severity)},
                        {"message", {{"text", fmt::format("{} ({})", m.text, where(group))}}},

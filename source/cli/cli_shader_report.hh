@@ -11,6 +11,14 @@ struct ShaderReport {
   std::size_t program_count = 0;
   std::size_t variant_count = 0;
   std::vector<shader_check::CheckTarget> targets;
+  /** Of programs whose target follows from their files. */
+  struct Choice {
+    std::string program;
+    shader_check::CheckTarget target;
+    /** A clause. */
+    std::string reason;
+  };
+  std::vector<Choice> choices;
   double seconds = 0.0;
 
   [[nodiscard]] bool has_errors() const;

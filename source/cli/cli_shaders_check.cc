@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shaders.hh"
 
+#include "cli_shader_jobs.hh"
 #include "cli_shader_programs.hh"
-#include "cli_shader_report.hh"
 
 #include "eevee_programs.hh"
-#include "scene_parallel.hh"
+#include "output_roles.hh"
 #include "scene_types.hh"
 
-#include <unistd.h>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <thread>
+#include <iterator>
 
 namespace gnomon::cli {
 
@@ -24,62 +22,106 @@ struct CheckArguments {
   std::vector<std::string> files;
   std::vector<std::string> include_folders;
   std::vector<std::string> defines;
+  std::vector<std::string> levels;
+  std::vector<std::string> features;
   std::string stage;
-  std::string target = "all";
+  std::string target;
   std::string format = "text";
   std::string shaders;
   std::string program;
+  std::string cache;
+  std::string output;
+  std::string depfile;
+  std::string depfile_target;
+  double time_limit = WorkLimits().seconds;
 };
 
+/** `all`: as the engines' own shaders are checked. */
 std::vector<shader_check::CheckTarget> targets_of(const std::string &name)
 {
-  if (name == "opengl") {
-    return {shader_check::CheckTarget::OpenGl};
+  if (name == "all" || name == "auto" || name.empty()) {
+    return {shader_check::CheckTarget::OpenGlSpirv, shader_check::CheckTarget::Vulkan12};
   }
-  if (name == "vulkan") {
-    return {shader_check::CheckTarget::Vulkan};
-  }
-  return {shader_check::CheckTarget::OpenGl, shader_check::CheckTarget::Vulkan};
+  const auto found = std::ranges::find(shader_check::check_targets(), name, &shader_check::TargetName::name);
+  return {found == shader_check::check_targets().end() ? shader_check::CheckTarget::Vulkan12 : found->target};
 }
 
-/** Shows a progress bar on a terminal; silent in a pipe. */
-void show_progress(std::size_t done, std::size_t count)
+/** Reads the values of -W: NAME, no-NAME, error=NAME and error. */
+void read_levels(const std::vector<std::string> &arguments, shader_check::RuleLevels &levels, bool &is_strict)
 {
-  constexpr std::size_t width = 40;
-  const std::size_t full = done * width / std::max<std::size_t>(count, 1);
-  print_message("\r[{}{}] {}/{}{}", std::string(full, '#'), std::string(width - full, ' '), done, count,
-                done == count ? "\r\033[K" : "");
+  using shader_check::RuleLevel;
+  for (const std::string &argument : arguments) {
+    if (argument == "error") {
+      is_strict = true;
+      continue;
+    }
+    const bool is_off = argument.starts_with("no-");
+    const bool is_error = argument.starts_with("error=");
+    const std::string name = argument.substr(is_off ? 3 : is_error ? 6 : 0);
+    const auto rule = std::ranges::find(shader_check::check_rules(), name, &shader_check::CheckRule::name);
+    if (rule == shader_check::check_rules().end() || !rule->is_optional) {
+      std::string known;
+      for (const shader_check::CheckRule &other : shader_check::check_rules()) {
+        known += other.is_optional ? fmt::format("{}{}", known.empty() ? "" : ", ", other.name) : "";
+      }
+      throw UsageError(fmt::format("-W{}: {} '{}'; the rules with a level are {}", argument,
+                                   rule == shader_check::check_rules().end() ? "no rule" : "no level for rule", name,
+                                   known));
+    }
+    levels[name] = is_off ? RuleLevel::Off : is_error ? RuleLevel::Error : RuleLevel::Warning;
+  }
 }
 
-/** Checks all of \a descs for all of \a targets, on all cores. */
-ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::ShaderFiles &files,
-                       const shader_check::CheckOptions &options, const std::vector<shader_check::CheckTarget> &targets)
+/** Runs \a jobs and puts their messages together. */
+ShaderReport report_of(const std::vector<ShaderJob> &jobs, const CheckArguments &arguments,
+                       std::vector<shader_check::ProgramCheck> *checks = nullptr)
 {
   const auto start = std::chrono::steady_clock::now();
-  const std::size_t job_count = descs.size() * targets.size();
-  std::vector<std::vector<shader_check::CheckMessage>> results(job_count);
-  std::atomic<std::size_t> done = 0;
-  const bool is_terminal = isatty(STDERR_FILENO) != 0;
-  const std::thread::id bar_thread = std::this_thread::get_id();
-  scene::parallel_for(job_count, 0, [&](std::size_t i) {
-    shader_check::CheckOptions job = options;
-    job.target = targets[i % targets.size()];
-    results[i] = shader_check::check_shader(descs[i / targets.size()], files, job);
-    done++;
-    if (is_terminal && std::this_thread::get_id() == bar_thread) {
-      show_progress(done, job_count);
-    }
-  });
-  if (is_terminal) {
-    show_progress(job_count, job_count);
-  }
+  JobOptions options;
+  options.limits.seconds = arguments.time_limit;
+  options.cache = arguments.cache;
+  std::vector<shader_check::ProgramCheck> results = run_jobs(jobs, options);
   ShaderReport report;
-  for (const std::vector<shader_check::CheckMessage> &messages : results) {
-    report.messages.insert(report.messages.end(), messages.begin(), messages.end());
+  for (std::size_t i = 0; i < jobs.size(); i++) {
+    std::ranges::copy(results[i].messages, std::back_inserter(report.messages));
+    if (!results[i].target_reason.empty()) {
+      report.choices.push_back({jobs[i].program, results[i].target, results[i].target_reason});
+    }
+    if (std::ranges::find(report.targets, results[i].target) == report.targets.end()) {
+      report.targets.push_back(results[i].target);
+    }
   }
-  report.variant_count = descs.size();
-  report.targets = targets;
+  if (checks != nullptr) {
+    *checks = std::move(results);
+  }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+/** Checks all of \a descs of Gnomon for all of \a targets. */
+ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::ShaderFiles &files,
+                       const CheckArguments &arguments)
+{
+  shader_check::CheckOptions options;
+  options.blocks = engine_blocks();
+  options.is_block_size_strict = true;
+  read_levels(arguments.levels, options.levels, options.is_strict);
+  std::vector<ShaderJob> jobs;
+  for (const gpu::ShaderDesc &desc : descs) {
+    for (const shader_check::CheckTarget target : targets_of(arguments.target)) {
+      const auto check = [&desc, &files, &options, target] {
+        shader_check::CheckOptions job = options;
+        job.target = target;
+        shader_check::ProgramCheck result;
+        result.messages = shader_check::check_shader(desc, files, job);
+        result.target = target;
+        return result;
+      };
+      jobs.push_back({check, desc.name, desc.vertex_path, target, ""});
+    }
+  }
+  ShaderReport report = report_of(jobs, arguments);
+  report.variant_count = descs.size();
   return report;
 }
 
@@ -120,38 +162,12 @@ ShaderReport check_engine(const CheckArguments &arguments)
       descs.push_back(desc);
     }
   }
-  shader_check::CheckOptions options;
-  options.blocks = engine_blocks();
-  options.is_block_size_strict = true;
-  ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
+  ShaderReport report = check_all(descs, files.files(), arguments);
   report.program_count = arguments.program.empty() ? program_count(variants) : 1;
   for (shader_check::CheckMessage &message : report.messages) {
     message.file = files.shown(message.file);
   }
   return report;
-}
-
-gpu::ShaderStage required_stage(const std::string &file, const std::string &stage_name)
-{
-  const std::optional<gpu::ShaderStage> stage =
-      stage_of(stage_name.empty() ? fs::path(file) : fs::path("." + stage_name));
-  if (!stage) {
-    throw UsageError(
-        fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl, "
-                    ".surface.glsl, _surface.glsl; --stage vert|geom|frag|surface sets the stage",
-                    file));
-  }
-  return *stage;
-}
-
-std::string &path_of(gpu::ShaderDesc &desc, gpu::ShaderStage stage)
-{
-  switch (stage) {
-    case gpu::ShaderStage::Vertex: return desc.vertex_path;
-    case gpu::ShaderStage::Geometry: return desc.geometry_path;
-    case gpu::ShaderStage::Fragment: break;
-  }
-  return desc.fragment_path;
 }
 
 /** Converts the `NAME=VALUE` or `NAME` of -D to a define. */
@@ -172,8 +188,7 @@ ShaderReport check_surface_function(const std::string &file, const CheckArgument
   const std::optional<std::string_view> text = own.text(file);
   const auto failed = [&](int line, std::string reason) {
     ShaderReport report;
-    report.messages.push_back({shader_check::Severity::Error, file, line, std::move(reason), "include", file, "",
-                               shader_check::CheckTarget::OpenGl});
+    report.messages.push_back({shader_check::Severity::Error, file, line, std::move(reason), "include", file, ""});
     report.targets = targets_of(arguments.target);
     return report;
   };
@@ -187,70 +202,275 @@ ShaderReport check_surface_function(const std::string &file, const CheckArgument
     return failed(fault->line, fault->reason);
   }
   const EngineFiles engine("");
-  shader_check::CheckOptions options;
-  options.blocks = engine_blocks();
-  options.is_block_size_strict = true;
   ShaderReport report = check_all(
       descs_with_surface_function(),
       [&](std::string_view path) { return path == eevee::surface_function_file ? text : engine.files()(path); },
-      options, targets_of(arguments.target));
+      arguments);
   for (shader_check::CheckMessage &message : report.messages) {
     message.file = message.file == eevee::surface_function_file ? file : engine.shown(message.file);
   }
   return report;
 }
 
-/** Files whose names differ only in the stage belong to one program. */
-ShaderReport check_files(const CheckArguments &arguments)
+/** Whether both are stages of one pipeline of the same kind. */
+bool are_linked(shader_check::Stage a, shader_check::Stage b)
 {
-  ShaderReport functions;
+  using shader_check::Stage;
+  const auto is_mesh = [](Stage stage) { return stage == Stage::Task || stage == Stage::Mesh; };
+  const auto is_vertex = [](Stage stage) { return stage < Stage::Task; };
+  return a <= Stage::Fragment && b <= Stage::Fragment && !(is_mesh(a) && is_vertex(b)) && !(is_vertex(a) && is_mesh(b));
+}
+
+/** Adds \a file to the program of its name, or to a new one. */
+void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage stage, const std::string &file,
+              const std::vector<std::string> &defines)
+{
+  const std::string name = stem_of(file);
+  const auto takes = [&](const shader_check::Program &program) {
+    return program.name == name && std::ranges::all_of(program.files, [&](const auto &other) {
+             return other.stage != stage && are_linked(other.stage, stage);
+           });
+  };
+  auto program = std::ranges::find_if(programs, takes);
+  if (program == programs.end()) {
+    programs.push_back({name, {}, defines});
+    program = programs.end() - 1;
+  }
+  program->files.push_back({stage, file});
+}
+
+/**
+ * Adds the stages between the vertex and the fragment stage of \a program that lie beside them: without those the
+ * interfaces of the given ones do not meet.
+ */
+void add_stages_between(shader_check::Program &program)
+{
+  using shader_check::Stage;
+  const auto path_of = [&](Stage stage) {
+    const auto file = std::ranges::find(program.files, stage, &shader_check::Program::File::stage);
+    return file == program.files.end() ? std::string() : file->path;
+  };
+  const std::string vertex = path_of(Stage::Vertex);
+  if (vertex.empty() || path_of(Stage::Fragment).empty()) {
+    return;
+  }
+  for (const Stage stage : {Stage::TessControl, Stage::TessEvaluation, Stage::Geometry}) {
+    const std::string path = path_of(stage).empty() ? with_stage(vertex, stage) : std::string();
+    if (!path.empty() && fs::is_regular_file(path)) {
+      program.files.push_back({stage, path});
+    }
+  }
+}
+
+std::string unknown_stage(const std::string &file)
+{
+  if (file.ends_with(".hlsl")) {
+    return "HLSL is not checked";
+  }
+  std::string endings;
+  for (const shader_check::StageName &stage : shader_check::stage_names()) {
+    endings += fmt::format(".{}, ", stage.ending);
+  }
+  return fmt::format(
+      "its name ends in none of {}each also as .vert.glsl and _vert.glsl, .surface.glsl, _surface.glsl; "
+      "--stage sets the stage",
+      endings);
+}
+
+/** What make and ninja read: \a target depends on \a files. */
+void write_depfile(const std::string &path, const std::string &target, const std::vector<std::string> &files)
+{
+  const auto escaped = [](const std::string &file) {
+    std::string text;
+    for (const char c : file) {
+      text += c == ' ' || c == '#' ? fmt::format("\\{}", c) : c == '$' ? std::string("$$") : std::string(1, c);
+    }
+    return text;
+  };
+  std::string text = escaped(target) + ":";
+  for (const std::string &file : files) {
+    text += fmt::format(" \\\n  {}", escaped(file));
+  }
+  output::write_file(path, text + "\n");
+}
+
+bool is_output_folder(const CheckArguments &arguments)
+{
+  return arguments.files.size() > 1 || fs::is_directory(arguments.output);
+}
+
+/** Where -o puts the SPIR-V of \a file. */
+fs::path output_path(const CheckArguments &arguments, const std::string &file)
+{
+  return is_output_folder(arguments) ? fs::path(arguments.output) / (fs::path(file).filename().string() + ".spv")
+                                     : fs::path(arguments.output);
+}
+
+/** \throws output::Conflict where an output would replace what is read, or another output */
+void require_outputs(const std::vector<shader_check::Program> &programs, const CheckArguments &arguments)
+{
+  output::Roles roles;
+  for (const shader_check::Program &program : programs) {
+    for (const shader_check::Program::File &file : program.files) {
+      roles.add_input(file.path, "a shader");
+    }
+  }
+  if (!arguments.output.empty()) {
+    if (is_output_folder(arguments)) {
+      fs::create_directories(arguments.output);
+    }
+    for (const shader_check::Program &program : programs) {
+      for (const shader_check::Program::File &file : program.files) {
+        roles.add_output(output_path(arguments, file.path), "the SPIR-V of " + file.path);
+      }
+    }
+  }
+  roles.add_output(arguments.depfile, "-MF");
+}
+
+/** Writes the SPIR-V of \a checks: of one file to the path of -o, of more into that folder. */
+void write_output(const std::vector<shader_check::Program> &programs,
+                  const std::vector<shader_check::ProgramCheck> &checks, const CheckArguments &arguments)
+{
+  for (std::size_t i = 0; i < checks.size(); i++) {
+    for (const auto &[stage, words] : checks[i].spirv) {
+      const auto file = std::ranges::find(programs[i].files, stage, &shader_check::Program::File::stage);
+      output::write_file(output_path(arguments, file->path),
+                         {reinterpret_cast<const char *>(words.data()), words.size() * sizeof(std::uint32_t)});
+    }
+  }
+}
+
+/** Files whose names differ only in the stage belong to one program. */
+ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
+{
+  ShaderReport others;
   std::size_t function_count = 0;
-  std::vector<gpu::ShaderDesc> descs;
+  std::vector<shader_check::Program> programs;
   std::vector<std::string> defines;
   std::ranges::transform(arguments.defines, std::back_inserter(defines), define_of);
   for (const std::string &file : arguments.files) {
     if (arguments.stage == "surface" || (arguments.stage.empty() && is_surface_function(file))) {
       const ShaderReport report = check_surface_function(file, arguments);
-      std::ranges::copy(report.messages, std::back_inserter(functions.messages));
-      functions.variant_count += report.variant_count;
-      functions.seconds += report.seconds;
+      std::ranges::copy(report.messages, std::back_inserter(others.messages));
+      others.variant_count += report.variant_count;
+      others.seconds += report.seconds;
+      others.targets = report.targets;
       function_count++;
       continue;
     }
-    const gpu::ShaderStage stage = required_stage(file, arguments.stage);
-    const std::string name = stem_of(file);
-    auto desc = std::ranges::find_if(
-        descs, [&](gpu::ShaderDesc &known) { return known.name == name && path_of(known, stage).empty(); });
-    if (desc == descs.end()) {
-      descs.push_back({name, "", "", "", defines});
-      desc = descs.end() - 1;
+    const std::optional<shader_check::Stage> stage =
+        stage_of(arguments.stage.empty() ? fs::path(file) : fs::path("." + arguments.stage));
+    if (stage) {
+      add_file(programs, *stage, file, defines);
     }
-    path_of(*desc, stage) = file;
+    else {
+      others.messages.push_back({shader_check::Severity::Error, file, 1, unknown_stage(file), "stage", file, ""});
+    }
   }
-  shader_check::FolderFiles files{fs::path()};
-  shader_check::CheckOptions options;
-  options.include_path = include_path({arguments.include_folders.begin(), arguments.include_folders.end()});
-  ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
-  report.program_count = descs.size() + function_count;
-  std::ranges::copy(functions.messages, std::back_inserter(report.messages));
-  report.variant_count += functions.variant_count;
-  report.seconds += functions.seconds;
+  is_any_checked = !programs.empty() || function_count > 0;
+  std::ranges::for_each(programs, add_stages_between);
+  require_outputs(programs, arguments);
+  shader_check::FolderFiles folder{fs::path()};
+  const gpu::ShaderFiles files = folder.files();
+  shader_check::ProgramOptions options;
+  options.include_folders = arguments.include_folders;
+  options.features = arguments.features;
+  read_levels(arguments.levels, options.levels, options.is_strict);
+  std::vector<ShaderJob> jobs;
+  for (const shader_check::Program &program : programs) {
+    std::vector<std::optional<shader_check::CheckTarget>> targets{std::nullopt};
+    if (!arguments.target.empty() && arguments.target != "auto") {
+      const auto named = targets_of(arguments.target);
+      targets.assign(named.begin(), named.end());
+    }
+    for (const std::optional<shader_check::CheckTarget> target : targets) {
+      shader_check::ProgramOptions job = options;
+      job.target = target;
+      const bool has_output = !arguments.output.empty();
+      const auto check = [&program, &files, job, has_output] {
+        shader_check::ProgramCheck result = shader_check::check_program(program, files, job);
+        if (!has_output) {
+          result.spirv.clear();
+        }
+        return result;
+      };
+      std::string key =
+          fmt::format("{}\n{}\n{}\n{}\n", target ? int(*target) : -1, has_output, job.is_strict, program.name);
+      for (const shader_check::Program::File &file : program.files) {
+        key += fmt::format("file {} {}\n", int(file.stage), file.path);
+      }
+      for (const auto &list : {program.defines, job.include_folders, job.features}) {
+        key += fmt::format("list {}\n", list.size());
+        for (const std::string &word : list) {
+          key += word + "\n";
+        }
+      }
+      for (const auto &[rule, level] : job.levels) {
+        key += fmt::format("{}={}\n", rule, int(level));
+      }
+      jobs.push_back({check, program.name, program.files.front().path,
+                      target.value_or(shader_check::CheckTarget::OpenGl), std::move(key)});
+    }
+  }
+  std::vector<shader_check::ProgramCheck> checks;
+  ShaderReport report = report_of(jobs, arguments, &checks);
+  if (!arguments.output.empty() && !report.has_errors()) {
+    write_output(programs, checks, arguments);
+  }
+  if (!arguments.depfile.empty()) {
+    std::vector<std::string> read;
+    for (const shader_check::ProgramCheck &check : checks) {
+      for (const std::string &path : check.files) {
+        if (std::ranges::find(read, path) == read.end()) {
+          read.push_back(path);
+        }
+      }
+    }
+    write_depfile(arguments.depfile, arguments.depfile_target.empty() ? arguments.output : arguments.depfile_target,
+                  read);
+  }
+  report.program_count = programs.size() + function_count;
+  report.variant_count = programs.size() + others.variant_count;
+  std::ranges::copy(others.messages, std::back_inserter(report.messages));
+  for (const shader_check::CheckTarget target : others.targets) {
+    if (std::ranges::find(report.targets, target) == report.targets.end()) {
+      report.targets.push_back(target);
+    }
+  }
+  report.seconds += others.seconds;
   return report;
+}
+
+void require_usage(const CheckArguments &a)
+{
+  if (!a.files.empty() && !a.shaders.empty()) {
+    throw UsageError("--shaders and FILES exclude each other");
+  }
+  if (a.files.empty() && !(a.include_folders.empty() && a.defines.empty() && a.stage.empty() && a.features.empty() &&
+                           a.cache.empty() && a.output.empty() && a.depfile.empty())) {
+    throw UsageError("-I, -D, -o, -MF, --stage, --feature and --cache are for FILES");
+  }
+  if (!a.output.empty() && a.target == "all") {
+    throw UsageError("-o needs one target");
+  }
+  if (!a.depfile.empty() && a.depfile_target.empty() && a.output.empty()) {
+    throw UsageError("-MF needs -MT TARGET or -o: the file that depends on the shaders");
+  }
 }
 
 Status check(const CheckArguments &arguments)
 {
-  if (!arguments.files.empty() && !arguments.shaders.empty()) {
-    throw UsageError("--shaders and FILES exclude each other");
-  }
-  if (arguments.files.empty() &&
-      !(arguments.include_folders.empty() && arguments.defines.empty() && arguments.stage.empty())) {
-    throw UsageError("-I, -D and --stage are for FILES");
-  }
-  const ShaderReport report = arguments.files.empty() ? check_engine(arguments) : check_files(arguments);
+  require_usage(arguments);
+  bool is_any_checked = true;
+  const ShaderReport report =
+      arguments.files.empty() ? check_engine(arguments) : check_files(arguments, is_any_checked);
   fmt::print("{}", arguments.format == "json"    ? to_json(report)
                    : arguments.format == "sarif" ? to_sarif(report)
                                                  : to_text(report));
+  if (!is_any_checked) {
+    throw UsageError(fmt::format("{}: {}", arguments.files.front(), unknown_stage(arguments.files.front())));
+  }
   return report.has_errors() ? Status::Failed : Status::Done;
 }
 
@@ -264,11 +484,35 @@ void add_shaders_check(CLI::App &shaders, Status &status)
   command->add_option("-I", a->include_folders, "Folder to search for includes, after that of the including file")
       ->allow_extra_args(false);
   command->add_option("-D", a->defines, "NAME or NAME=VALUE, defined in every stage")->allow_extra_args(false);
-  command->add_option("--stage", a->stage, "Stage of FILES (default: from their names)")
-      ->check(CLI::IsMember({"vert", "geom", "frag", "surface"}));
-  command->add_option("--target", a->target, "opengl, vulkan, all")
+  std::vector<std::string> stages{"surface"};
+  for (const shader_check::StageName &stage : shader_check::stage_names()) {
+    stages.emplace_back(stage.ending);
+  }
+  command->add_option("--stage", a->stage, "Stage of FILES (default: from their names)")->check(CLI::IsMember(stages));
+  std::vector<std::string> targets{"auto", "all", "vulkan"};
+  for (const shader_check::TargetName &target : shader_check::check_targets()) {
+    targets.emplace_back(target.name);
+  }
+  command
+      ->add_option("--target", a->target,
+                   "opengl (GLSL as drivers compile it), opengl-spirv, es, vulkan (1.2), vulkan1.0 to vulkan1.3, all "
+                   "(opengl-spirv and vulkan; the default of the engine's shaders), auto (as FILES say; their default)")
+      ->check(CLI::IsMember(targets));
+  command->add_option("-W", a->levels, "Level of a rule: -WRULE, -Wno-RULE, -Werror=RULE; -Werror: of all warnings")
+      ->allow_extra_args(false);
+  const auto features = shader_check::device_features();
+  command->add_option("--feature", a->features, "A feature of devices that FILES may assume, such as scalarBlockLayout")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(std::vector<std::string>(features.begin(), features.end())));
+  command->add_option("--time-limit", a->time_limit, "Seconds for each program and target")
       ->capture_default_str()
-      ->check(CLI::IsMember({"opengl", "vulkan", "all"}));
+      ->check(CLI::PositiveNumber);
+  command->add_option("--cache", a->cache, "Folder of results by the content of FILES and their includes");
+  command->add_option("-o", a->output, "File for the SPIR-V, or a folder for that of several FILES");
+  command->add_option("--depfile,--MF", a->depfile, "-MD -MF FILE: writes the files that were read for make and ninja");
+  command->add_flag("--MD")->description("With -MF, as compilers have it")->needs("--depfile");
+  command->add_option("--depfile-target,--MT", a->depfile_target,
+                      "-MT NAME: what depends on them (default: that of -o)");
   command->add_option("--format", a->format, "text, json, sarif")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json", "sarif"}));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "shader_check.hh"
 
+#include "gpu_shader_text.hh"
 #include "internal/shader_check_block.hh"
+#include "internal/shader_check_dialect.hh"
 #include "internal/shader_check_log.hh"
 #include "internal/shader_check_tree.hh"
 #include "shared_types.h"
@@ -12,13 +14,94 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace gnomon::shader_check {
 
+namespace {
+
+constexpr std::array<TargetName, 7> targets = {{
+    {CheckTarget::OpenGl, "opengl", "OpenGL GLSL"},
+    {CheckTarget::OpenGlSpirv, "opengl-spirv", "OpenGL 4.5"},
+    {CheckTarget::Es, "es", "OpenGL ES"},
+    {CheckTarget::Vulkan10, "vulkan1.0", "Vulkan 1.0"},
+    {CheckTarget::Vulkan11, "vulkan1.1", "Vulkan 1.1"},
+    {CheckTarget::Vulkan12, "vulkan1.2", "Vulkan 1.2"},
+    {CheckTarget::Vulkan13, "vulkan1.3", "Vulkan 1.3"},
+}};
+
+constexpr std::array<StageName, 14> stages = {{
+    {Stage::Vertex, "vert", "vertex"},
+    {Stage::TessControl, "tesc", "tessellation control"},
+    {Stage::TessEvaluation, "tese", "tessellation evaluation"},
+    {Stage::Geometry, "geom", "geometry"},
+    {Stage::Task, "task", "task"},
+    {Stage::Mesh, "mesh", "mesh"},
+    {Stage::Fragment, "frag", "fragment"},
+    {Stage::Compute, "comp", "compute"},
+    {Stage::RayGeneration, "rgen", "ray generation"},
+    {Stage::Intersection, "rint", "intersection"},
+    {Stage::AnyHit, "rahit", "any hit"},
+    {Stage::ClosestHit, "rchit", "closest hit"},
+    {Stage::Miss, "rmiss", "miss"},
+    {Stage::Callable, "rcall", "callable"},
+}};
+
+bool has_spirv(CheckTarget target)
+{
+  return target == CheckTarget::OpenGlSpirv || is_vulkan(target);
+}
+
+spv_target_env environment_of(CheckTarget target)
+{
+  switch (target) {
+    case CheckTarget::Vulkan10: return SPV_ENV_VULKAN_1_0;
+    case CheckTarget::Vulkan11: return SPV_ENV_VULKAN_1_1;
+    case CheckTarget::Vulkan12: return SPV_ENV_VULKAN_1_2;
+    case CheckTarget::Vulkan13: return SPV_ENV_VULKAN_1_3;
+    default: return SPV_ENV_OPENGL_4_5;
+  }
+}
+
+struct Feature {
+  std::string_view name;
+  void (spvtools::ValidatorOptions::*allow)(bool);
+};
+
+constexpr std::array<Feature, 5> features = {{
+    {"scalarBlockLayout", &spvtools::ValidatorOptions::SetScalarBlockLayout},
+    {"uniformBufferStandardLayout", &spvtools::ValidatorOptions::SetUniformBufferStandardLayout},
+    {"relaxedBlockLayout", &spvtools::ValidatorOptions::SetRelaxBlockLayout},
+    {"workgroupMemoryExplicitLayoutScalarBlockLayout", &spvtools::ValidatorOptions::SetWorkgroupScalarBlockLayout},
+    {"maintenance4", &spvtools::ValidatorOptions::SetAllowLocalSizeId},
+}};
+
+}  // namespace
+
+std::span<const TargetName> check_targets()
+{
+  return targets;
+}
+
 std::string_view to_string(CheckTarget target)
 {
-  return target == CheckTarget::OpenGl ? "OpenGL 4.5" : "Vulkan 1.2";
+  return targets[std::size_t(target)].text;
+}
+
+bool is_vulkan(CheckTarget target)
+{
+  return target >= CheckTarget::Vulkan10;
+}
+
+std::span<const StageName> stage_names()
+{
+  return stages;
+}
+
+std::string_view to_string(Stage stage)
+{
+  return stages[std::size_t(stage)].text;
 }
 
 std::string_view to_string(Severity severity)
@@ -29,120 +112,182 @@ std::string_view to_string(Severity severity)
 namespace {
 
 /** Above this size a uniform block is an error, although some devices support more. */
-constexpr std::uint32_t uniform_block_bytes_limit = 65536;
+constexpr int uniform_block_bytes_limit = 65536;
 
-constexpr std::array<CheckRule, 16> rules = {{
+constexpr std::array<CheckRule, 19> rules = {{
+    {"stage", "the name of a file, or an option, gives its stage"},
     {"include", "included files and the files of stages exist"},
     {"compile", "glslang accepts the stage"},
     {"link", "glslang accepts the stages together"},
-    {"spirv", "SPIRV-Tools accepts glslang's output for the stage"},
-    {"slot", "each block and texture has a slot of its own, the same in each stage"},
-    {"missing-varying", "each input of a stage is an output of the previous stage"},
-    {"varying-type", "an input has the type of the previous stage's output"},
-    {"layout", "a block has the same layout in C++ and GLSL"},
-    {"block-array", "an array in a block has elements that fill rows of 16 bytes"},
-    {"block-size", "a uniform block is within the limit that all devices support"},
+    {"limit", "the check of a program ends within its limits of time and memory"},
+    {"spirv", "SPIRV-Tools accepts glslang's output for the stage", true},
+    {"slot", "each block and texture has a slot of its own, the same in each stage", true, true},
+    {"missing-varying", "each input of a stage is an output of the previous stage", true},
+    {"varying-type", "an input has the type of the previous stage's output", true},
+    {"block-match", "a block has the same members and slot in each stage", true},
+    {"layout", "a block has the same layout in C++ and GLSL", true, true},
+    {"block-array", "an array in a block has elements that fill rows of 16 bytes", true, true},
+    {"block-size", "a uniform block is within the limit that all devices support", true},
     {"recursion", "no function calls itself"},
-    {"unused-binding", "each declared block or texture is read"},
-    {"unread-output", "an output is read by the next stage"},
-    {"implicit-conversion", "a member of a block is converted only explicitly"},
-    {"unbounded-loop", "a value that the loop steps bounds the loop"},
-    {"unguarded-math", "the argument of a function with a limited domain is guarded"},
+    {"unused-binding", "each declared block or texture is read", true},
+    {"unread-output", "an output is read by the next stage", true},
+    {"implicit-conversion", "a member of a block is converted only explicitly", true},
+    {"unbounded-loop", "a value that the loop steps bounds the loop", true},
+    {"unguarded-math", "the argument of a function with a limited domain is guarded", true},
 }};
+
+/** What a Checker checks for. */
+struct CheckSettings {
+  CheckOptions options;
+  /** Whether the shaders are Gnomon's, to which rules with CheckRule::is_own apply. */
+  bool is_own = true;
+  std::span<const std::string> features;
+};
+
+/** Whether two stages are parts of one pipeline. */
+bool is_pipeline(Stage stage)
+{
+  return stage <= Stage::Fragment;
+}
 
 class Checker {
  public:
-  Checker(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files, const CheckOptions &options)
-      : desc_(desc), files_(files), options_(options)
+  Checker(std::string name, const std::vector<std::string> &defines, const CheckSettings &settings)
+      : name_(std::move(name)), options_(settings.options), settings_(settings)
   {
-    for (const std::string &define : desc.defines) {
+    for (const std::string &define : defines) {
       variant_ += (variant_.empty() ? "" : " ") + define;
     }
   }
 
-  std::vector<CheckMessage> run()
+  /** A stage that cannot be read. */
+  void refuse(std::string file, int line, std::string_view text)
   {
-    if (preprocess_stages() && compile_stages()) {
-      link_stages();
+    add(Severity::Error, "include", std::move(file), line, text);
+  }
+  /** Compiles the next stage. */
+  void compile(std::unique_ptr<StageSource> source)
+  {
+    const std::size_t stage = c_.sources.size();
+    const bool is_compiled = c_.add(std::move(source), options_.target);
+    StageSource &added = *c_.sources.back();
+    check_byte_order_mark(added);
+    for (const CompileMessage &message : compile_messages(c_.glslang.log(), added)) {
+      add(message.severity, message.rule, stage, message.position, message.text);
     }
-    std::ranges::stable_sort(messages_, [](const CheckMessage &a, const CheckMessage &b) {
-      return std::tie(a.file, a.line, a.text) < std::tie(b.file, b.line, b.text);
-    });
+    if (!is_compiled && !has_errors()) {
+      add(Severity::Error, "compile", stage, {}, std::string(c_.glslang.log()));
+    }
+    is_compiled_ &= is_compiled;
+  }
+  /** Links the stages and checks them together. */
+  void finish()
+  {
+    if (is_compiled_ && !has_errors()) {
+      const std::size_t compiled = messages_.size();
+      link_stages();
+      std::stable_sort(messages_.begin() + std::ptrdiff_t(compiled), messages_.end(),
+                       [](const CheckMessage &a, const CheckMessage &b) {
+                         return std::tie(a.file, a.line, a.rule, a.text) < std::tie(b.file, b.line, b.rule, b.text);
+                       });
+    }
     // A header that is part of several stages gives the same message several times.
-    messages_.erase(std::unique(messages_.begin(), messages_.end()), messages_.end());
+    std::set<std::tuple<std::string_view, int, std::string_view, std::string_view>> known;
+    std::vector<CheckMessage> unique;
+    for (CheckMessage &message : messages_) {
+      if (known.emplace(message.file, message.line, message.rule, message.text).second) {
+        unique.push_back(message);
+      }
+    }
+    known.clear();
+    messages_ = std::move(unique);
+  }
+  std::vector<CheckMessage> messages()
+  {
     return std::move(messages_);
+  }
+  const Compilation &compilation() const
+  {
+    return c_;
+  }
+  std::vector<std::pair<Stage, std::vector<std::uint32_t>>> spirv()
+  {
+    return std::move(spirv_);
   }
 
  private:
-  void add(Severity severity, std::string_view rule, std::string file, int line, std::string_view text)
+  static const CheckRule &rule_of(std::string_view name)
   {
-    messages_.push_back({severity, std::move(file), line, bounded(text), rule, desc_.name, variant_, options_.target});
+    return *std::ranges::find(rules, name, &CheckRule::name);
   }
-  void add(Severity severity, std::string_view rule, std::size_t stage, SourcePosition position, std::string_view text)
+  /** The severity of a mistake; empty: it is not reported. \a set: a level that a comment gives. */
+  std::optional<Severity> severity_of(Severity usual, std::string_view name, std::optional<RuleLevel> set) const
   {
-    add(severity, rule, c_.file(stage, position), position.line, text);
+    const CheckRule &rule = rule_of(name);
+    if (rule.is_optional && !set) {
+      const auto found = options_.levels.find(name);
+      set = found == options_.levels.end() ? std::nullopt : std::optional(found->second);
+    }
+    if (rule.is_optional && set) {
+      return *set == RuleLevel::Off ? std::nullopt
+                                    : std::optional(*set == RuleLevel::Error ? Severity::Error : Severity::Warning);
+    }
+    if (rule.is_own && !settings_.is_own) {
+      return std::nullopt;
+    }
+    return options_.is_strict ? Severity::Error : usual;
+  }
+  void add(Severity usual, std::string_view rule, std::string file, int line, std::string_view text)
+  {
+    if (const std::optional<Severity> severity = severity_of(usual, rule, std::nullopt)) {
+      messages_.push_back({*severity, std::move(file), line, bounded(text), rule, name_, variant_, options_.target});
+    }
+  }
+  void add(Severity usual, std::string_view rule, std::size_t stage, SourcePosition position, std::string_view text)
+  {
+    const SourceLines &lines = c_.lines[stage];
+    const std::optional<Severity> severity = severity_of(usual, rule, lines.level(position.file, rule));
+    if (severity && !(usual == Severity::Warning && lines.is_excused(position, rule))) {
+      messages_.push_back({*severity, c_.file(stage, position), position.line, bounded(text), rule, name_, variant_,
+                           options_.target, position.column});
+    }
   }
   bool has_errors() const
   {
     return std::ranges::any_of(messages_, [](const CheckMessage &m) { return m.severity == Severity::Error; });
   }
 
-  bool preprocess_stages()
+  void check_byte_order_mark(const StageSource &source)
   {
-    try {
-      c_.sources = gpu::preprocess(desc_, files_, options_.include_path);
+    for (const std::size_t file : source.marked()) {
+      add(Severity::Error, "compile", source.files()[file], 1,
+          "the file begins with a byte-order mark (U+FEFF), which GLSL does not allow; save it as UTF-8 without one");
     }
-    catch (const gpu::SourceError &error) {
-      add(Severity::Error, "include", error.file, error.line, error.text);
-      return false;
-    }
-    catch (const gpu::Error &error) {
-      const std::string &file = !desc_.vertex_path.empty()     ? desc_.vertex_path
-                                : !desc_.geometry_path.empty() ? desc_.geometry_path
-                                                               : desc_.fragment_path;
-      add(Severity::Error, "include", file, 1, error.what());
-      return false;
-    }
-    for (const gpu::ShaderSource &source : c_.sources) {
-      c_.lines.emplace_back(source);
-    }
-    return true;
-  }
-
-  bool compile_stages()
-  {
-    const GlslangTarget target =
-        options_.target == CheckTarget::OpenGl ? GlslangTarget::OpenGlSpirv : GlslangTarget::VulkanSpirv;
-    bool is_done = true;
-    for (std::size_t i = 0; i < c_.sources.size(); i++) {
-      const bool is_compiled = c_.glslang.add(c_.sources[i], target);
-      for (const CompileMessage &message : compile_messages(c_.glslang.log())) {
-        add(message.severity, "compile", i, message.position, message.text);
-      }
-      if (!is_compiled && !has_errors()) {
-        add(Severity::Error, "compile", i, {}, std::string(c_.glslang.log()));
-      }
-      is_done &= is_compiled;
-    }
-    return is_done;
   }
 
   void link_stages()
   {
-    const bool is_linked = c_.glslang.link();
+    bool is_linked = c_.glslang.link();
     const std::string log(c_.glslang.log());
     c_.read_facts();
     check_findings();
     check_slots();
     check_varyings();
+    if (!is_linked && may_differ(link_messages(log))) {
+      add_block_differences(link_messages(log));
+      is_linked = true;
+    }
     // glslang's link errors have no line. They are reported only if our own checks, whose messages have lines, found no
     // mistake.
     if (!is_linked && !has_errors()) {
-      const std::size_t stage = c_.sources.size() - 1;
       for (const LinkMessage &message : link_messages(log)) {
-        add(Severity::Error, "link", stage,
-            message.name.empty() ? SourcePosition() : c_.lines[stage].find_declaration(message.name, "uniform"),
-            message.text);
+        if (message.severity == Severity::Error) {
+          const auto [stage, position] = place_of(message.text);
+          add(Severity::Error, "link", stage, position, message.text);
+        }
+      }
+      if (!has_errors()) {
+        add(Severity::Error, "link", c_.sources.size() - 1, SourcePosition(), log);
       }
     }
     if (!is_linked) {
@@ -150,7 +295,80 @@ class Checker {
     }
     check_unused_bindings();
     check_blocks();
-    check_spirv();
+    if (has_spirv(options_.target)) {
+      make_spirv();
+    }
+  }
+
+  /**
+   * Whether all of \a errors are differences between stages that Vulkan, which connects stages by number and not by
+   * name, allows.
+   */
+  bool may_differ(const std::vector<LinkMessage> &errors) const
+  {
+    return is_vulkan(options_.target) && !settings_.is_own &&
+           std::ranges::all_of(errors, [](const LinkMessage &message) {
+             const std::string_view head = std::string_view(message.text).substr(0, message.text.find(':'));
+             return message.severity == Severity::Warning || find_word(head, "stages") != std::string_view::npos;
+           });
+  }
+  void add_block_differences(const std::vector<LinkMessage> &errors)
+  {
+    for (const LinkMessage &message : errors) {
+      // Stages often have parts of their own in the push constants.
+      const bool is_push_constant = std::ranges::any_of(c_.facts, [&](const StageFacts &facts) {
+        return std::ranges::any_of(facts.uniform_blocks, [&](const Declaration &block) {
+          return block.is_push_constant && find_word(message.text, block.name) != std::string_view::npos;
+        });
+      });
+      if (message.severity == Severity::Error && !is_push_constant) {
+        const auto [stage, position] = place_of(message.text);
+        add(Severity::Warning, "block-match", stage, position, message.text);
+      }
+    }
+  }
+
+  /** The stage that a link error is about, and the first declaration in it that the error names. */
+  std::pair<std::size_t, SourcePosition> place_of(std::string_view text) const
+  {
+    // "Linking fragment stage: …" or "Linking vertex and fragment stages: …".
+    const std::string_view head = text.substr(0, text.find(':'));
+    std::vector<std::size_t> stages_in_question;
+    for (std::size_t i = c_.sources.size(); i-- > 0;) {
+      if (find_word(head, to_string(c_.sources[i]->stage())) != std::string_view::npos) {
+        stages_in_question.push_back(i);
+      }
+    }
+    if (stages_in_question.empty()) {
+      stages_in_question.push_back(c_.sources.size() - 1);
+    }
+    for (const bool is_declared : {true, false}) {
+      for (gpu::TextScanner scanner(text.substr(head.size())); !scanner.rest().empty();) {
+        const std::string_view word = scanner.take_word();
+        if (word.empty()) {
+          scanner.take(scanner.rest().substr(0, 1));
+          continue;
+        }
+        for (const std::size_t stage : stages_in_question) {
+          for (const std::string_view keyword : {"uniform", "buffer", "in", "out", "shared"}) {
+            const auto place = c_.lines[stage].find_name(word, is_declared ? keyword : std::string_view());
+            const bool is_there =
+                place && (!is_declared || find_word(c_.lines[stage].line(*place), keyword) != std::string_view::npos);
+            if (is_there && !is_plain_word(word)) {
+              return {stage, *place};
+            }
+          }
+        }
+      }
+    }
+    return {stages_in_question.front(), SourcePosition()};
+  }
+  /** Words of glslang's messages that are also words of GLSL. */
+  static bool is_plain_word(std::string_view word)
+  {
+    static constexpr std::array<std::string_view, 12> words = {
+        "in", "out", "uniform", "buffer", "layout", "location", "binding", "shared", "const", "stage", "type", "main"};
+    return std::ranges::find(words, word) != words.end();
   }
 
   void check_findings()
@@ -170,14 +388,15 @@ class Checker {
     };
     std::vector<Slot> known;
     const auto take = [&](std::size_t stage, gpu::BindingKind kind, const Declaration &declaration) {
-      const bool is_push_constant = declaration.name == gpu::push_constant_block_name && declaration.slot < 0;
+      const bool is_push_constant = declaration.is_push_constant && declaration.slot < 0;
       if (declaration.slot < 0 && !is_push_constant) {
         add(Severity::Error, "slot", stage, declaration.position,
             fmt::format("{} '{}' has no layout(binding = …)", to_string(kind), declaration.name));
       }
       for (const Slot &other : known) {
         // OpenGL has separate slots for each kind of resource, Vulkan one set for all.
-        const bool is_same_space = kind == other.kind || options_.target == CheckTarget::Vulkan;
+        const bool is_same_space =
+            (kind == other.kind && declaration.is_image == other.declaration->is_image) || is_vulkan(options_.target);
         const bool is_same_slot = declaration.slot >= 0 && declaration.slot == other.declaration->slot &&
                                   declaration.set == other.declaration->set;
         if (declaration.name == other.declaration->name && kind == other.kind) {
@@ -215,39 +434,58 @@ class Checker {
     if (output.location < 0 || input.location < 0) {
       return output.name == input.name;
     }
+    const bool has_components = output.component_count > 0 && input.component_count > 0;
     return output.location < input.location + input.location_count &&
-           input.location < output.location + output.location_count;
+           input.location < output.location + output.location_count &&
+           !(has_components && (output.component >= input.component + input.component_count ||
+                                input.component >= output.component + output.component_count));
+  }
+  /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3. */
+  bool is_part(const Declaration &output, const Declaration &input) const
+  {
+    return options_.target == CheckTarget::Vulkan13 && output.type->isVector() && !output.type->isArray() &&
+           !input.type->isArray() && !input.type->isMatrix() &&
+           output.type->getBasicType() == input.type->getBasicType() &&
+           input.type->getVectorSize() < output.type->getVectorSize();
+  }
+
+  static std::string named(const Declaration &varying)
+  {
+    return varying.location < 0 ? fmt::format("'{}'", varying.name)
+                                : fmt::format("'{}', location {},", varying.name, varying.location);
   }
 
   void check_varyings()
   {
     for (std::size_t i = 1; i < c_.facts.size(); i++) {
-      const bool is_arrayed = c_.sources[i].stage == gpu::ShaderStage::Geometry;
-      const std::string_view before = to_string(c_.sources[i - 1].stage);
+      if (!is_pipeline(c_.sources[i]->stage()) || c_.sources[i - 1]->stage() == Stage::Task) {
+        continue;
+      }
+      const std::string_view before = to_string(c_.sources[i - 1]->stage());
       const std::vector<Declaration> &outputs = c_.facts[i - 1].outputs;
       for (const Declaration &input : c_.facts[i].inputs) {
         const auto output = std::ranges::find_if(outputs, [&](const Declaration &o) { return match(o, input); });
         if (output == outputs.end()) {
-          if (input.is_used) {
+          if (input.is_used && !input.is_member) {
             add(Severity::Error, "missing-varying", i, input.position,
-                fmt::format("input '{}', location {}, is no output of the {} stage", input.name, input.location,
-                            before));
+                fmt::format("input {} is no output of the {} stage", named(input), before));
           }
           continue;
         }
-        const std::string written = type_name(*output->type);
-        const std::string read = type_name(*input.type, is_arrayed);
-        if (output->location == input.location && written != read && !input.type->isStruct()) {
+        const std::string written = type_name(*output->type, output->is_arrayed);
+        const std::string read = type_name(*input.type, input.is_arrayed);
+        if (output->location == input.location && output->component == input.component && written != read &&
+            !input.type->isStruct() && !is_part(*output, input)) {
           add(Severity::Error, "varying-type", i, input.position,
-              fmt::format("input '{}', location {}, is {}, and the {} stage writes {}", input.name, input.location,
-                          read, before, written));
+              fmt::format("input {} is {}, and the {} stage writes {}", named(input), read, before, written));
         }
       }
       for (const Declaration &output : outputs) {
-        if (std::ranges::none_of(c_.facts[i].inputs,
-                                 [&](const Declaration &input) { return input.is_used && match(output, input); })) {
+        if (!output.is_captured && std::ranges::none_of(c_.facts[i].inputs, [&](const Declaration &input) {
+              return input.is_used && match(output, input);
+            })) {
           add(Severity::Warning, "unread-output", i - 1, output.position,
-              fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i].stage)));
+              fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i]->stage())));
         }
       }
     }
@@ -279,6 +517,17 @@ class Checker {
 
   void check_blocks()
   {
+    std::set<std::string_view> known;
+    for (std::size_t i = 0; i < c_.facts.size(); i++) {
+      for (const Declaration &block : c_.facts[i].uniform_blocks) {
+        if (known.insert(block.name).second && !block.is_push_constant) {
+          check_block_size(i, block);
+        }
+      }
+    }
+    if (options_.blocks.empty()) {
+      return;
+    }
     const gpu::ShaderInterface interface = interface_of(c_.glslang.program());
     for (const gpu::ShaderInterface::Binding &binding : interface.bindings) {
       const std::optional<StageDeclaration> found =
@@ -286,58 +535,97 @@ class Checker {
       if (!found) {
         continue;
       }
-      if (binding.kind == gpu::BindingKind::UniformBlock) {
-        check_block_size(binding, *found);
-      }
       const auto layout = std::ranges::find(options_.blocks, binding.name, &gpu::BlockLayout::name);
       if (layout != options_.blocks.end()) {
         for (const BlockDifference &difference : differences(compare_block(c_, binding, *found, *layout))) {
           add(Severity::Error, "layout", difference.file, difference.line, difference.text);
         }
       }
-      else if (!options_.blocks.empty()) {
+      else {
         add(Severity::Error, "layout", found->stage, found->declaration->position,
             fmt::format("block '{}' is not in the table of C++ blocks", binding.name));
       }
     }
   }
 
-  void check_block_size(const gpu::ShaderInterface::Binding &binding, const StageDeclaration &found)
+  void check_block_size(std::size_t stage, const Declaration &block)
   {
-    if (binding.size_bytes <= std::uint32_t(UNIFORM_BLOCK_BYTES_MAX)) {
+    // A block ends at the end of its last member's row of 16 bytes.
+    const int bytes = (glslang::TIntermediate::getBlockSize(*block.type) + 15) / 16 * 16;
+    if (bytes <= UNIFORM_BLOCK_BYTES_MAX) {
       return;
     }
-    const bool is_error = options_.is_block_size_strict || binding.size_bytes > uniform_block_bytes_limit;
-    add(is_error ? Severity::Error : Severity::Warning, "block-size", found.stage, found.declaration->position,
-        fmt::format("block '{}' takes {} bytes; all devices support {}, many {}, few more", binding.name,
-                    binding.size_bytes, UNIFORM_BLOCK_BYTES_MAX, uniform_block_bytes_limit));
+    const bool is_error = options_.is_block_size_strict || (settings_.is_own && bytes > uniform_block_bytes_limit);
+    add(is_error ? Severity::Error : Severity::Warning, "block-size", stage, block.position,
+        fmt::format("block '{}' takes {} bytes; all devices support {}, many {}, few more", block.name, bytes,
+                    UNIFORM_BLOCK_BYTES_MAX, uniform_block_bytes_limit));
   }
 
-  void check_spirv()
+  void make_spirv()
   {
-    spvtools::SpirvTools tools(options_.target == CheckTarget::OpenGl ? SPV_ENV_OPENGL_4_5 : SPV_ENV_VULKAN_1_2);
     for (std::size_t i = 0; i < c_.sources.size(); i++) {
       std::vector<std::uint32_t> words;
       spv::SpvBuildLogger logger;
       glslang::GlslangToSpv(*c_.tree(i), words, &logger);
-      std::string reason = logger.getAllMessages();
-      bool is_warned = !reason.empty();
-      tools.SetMessageConsumer(
-          [&](spv_message_level_t, const char *, const spv_position_t &, const char *text) { reason += text; });
-      const bool is_valid = tools.Validate(words);
-      if (!is_valid || is_warned) {
-        std::ranges::replace(reason, '\n', ' ');
-        add(is_valid ? Severity::Warning : Severity::Error, "spirv", i, {}, reason);
-      }
+      validate(i, words, logger.getAllMessages());
+      spirv_.emplace_back(c_.sources[i]->stage(), std::move(words));
     }
   }
 
-  const gpu::ShaderDesc &desc_;
-  const gpu::ShaderFiles &files_;
+  /** \a text: messages about how \a words were made. */
+  void validate(std::size_t stage, const std::vector<std::uint32_t> &words, std::string text)
+  {
+    bool is_warned = !text.empty();
+    spvtools::SpirvTools tools(environment_of(options_.target));
+    tools.SetMessageConsumer(
+        [&](spv_message_level_t, const char *, const spv_position_t &, const char *reason) { text += reason; });
+    // The validator searches linearly for a free name among equal ones, such as those of parameters. Without names its
+    // time is linear; they are made again for the message about a mistake.
+    constexpr std::size_t named_words_max = 1U << 16U;
+    const auto is_valid_with = [&](auto &&is_allowed, bool has_names = false) {
+      spvtools::ValidatorOptions allowed;
+      allowed.SetFriendlyNames(has_names);
+      for (const Feature &feature : features) {
+        if (is_allowed(feature.name)) {
+          (allowed.*feature.allow)(true);
+        }
+      }
+      return tools.Validate(words.data(), words.size(), allowed);
+    };
+    const auto is_given = [&](std::string_view name) {
+      return std::ranges::find(settings_.features, name) != settings_.features.end();
+    };
+    const std::string compiler_text = text;
+    bool is_valid = is_valid_with(is_given);
+    if (!is_valid && words.size() <= named_words_max) {
+      text = compiler_text;
+      is_valid_with(is_given, true);
+    }
+    if (!is_valid) {
+      const std::string reason = text;
+      for (const Feature &feature : features) {
+        if (is_valid_with([&](std::string_view name) { return name == feature.name || is_given(name); })) {
+          is_valid = is_warned = true;
+          text = fmt::format("a device needs the feature {0}, which --feature {0} assumes: {1}", feature.name, reason);
+          break;
+        }
+      }
+      text = is_valid ? text : reason;
+    }
+    if (!is_valid || is_warned) {
+      std::ranges::replace(text, '\n', ' ');
+      add(is_valid ? Severity::Warning : Severity::Error, "spirv", stage, {}, text);
+    }
+  }
+
+  std::string name_;
   const CheckOptions &options_;
+  const CheckSettings &settings_;
   std::string variant_;
+  bool is_compiled_ = true;
   Compilation c_;
   std::vector<CheckMessage> messages_;
+  std::vector<std::pair<Stage, std::vector<std::uint32_t>>> spirv_;
 };
 
 }  // namespace
@@ -347,12 +635,97 @@ std::span<const CheckRule> check_rules()
   return rules;
 }
 
+std::span<const std::string_view> device_features()
+{
+  static const std::array<std::string_view, features.size()> names = [] {
+    std::array<std::string_view, features.size()> list;
+    std::ranges::transform(features, list.begin(), &Feature::name);
+    return list;
+  }();
+  return names;
+}
+
+bool ProgramCheck::has_errors() const
+{
+  return std::ranges::any_of(messages, [](const CheckMessage &m) { return m.severity == Severity::Error; });
+}
+
 std::vector<CheckMessage> check_shader(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files,
                                        const CheckOptions &options)
 {
   std::vector<CheckMessage> messages;
-  with_large_stack([&] { messages = Checker(desc, files, options).run(); });
+  with_large_stack([&] {
+    const CheckSettings settings{options, true, {}};
+    Checker checker(desc.name, desc.defines, settings);
+    try {
+      for (gpu::ShaderSource &source : gpu::preprocess(desc, files)) {
+        checker.compile(std::make_unique<StageSource>(std::move(source)));
+      }
+    }
+    catch (const gpu::SourceError &error) {
+      checker.refuse(error.file, error.line, error.text);
+    }
+    catch (const gpu::Error &error) {
+      const std::string &file = !desc.vertex_path.empty()     ? desc.vertex_path
+                                : !desc.geometry_path.empty() ? desc.geometry_path
+                                                              : desc.fragment_path;
+      checker.refuse(file, 1, error.what());
+    }
+    checker.finish();
+    messages = checker.messages();
+  });
   return messages;
+}
+
+ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files, const ProgramOptions &options)
+{
+  ProgramCheck result;
+  with_large_stack([&] {
+    std::vector<Program::File> sorted = program.files;
+    std::ranges::stable_sort(sorted, {}, &Program::File::stage);
+    CheckSettings settings{{}, false, options.features};
+    settings.options.levels = options.levels;
+    settings.options.is_strict = options.is_strict;
+    if (options.target) {
+      result.target = *options.target;
+    }
+    else {
+      TargetChoice choice = choose_target(sorted, files, options.include_folders);
+      result.target = choice.target;
+      result.target_reason = std::move(choice.reason);
+    }
+    settings.options.target = result.target;
+    Checker checker(program.name, program.defines, settings);
+    for (const Program::File &file : sorted) {
+      if (const std::optional<std::string_view> text = files(file.path)) {
+        checker.compile(std::make_unique<StageSource>(file.stage, file.path, *text, program.defines, files,
+                                                      options.include_folders));
+      }
+      else {
+        checker.refuse(file.path, 1, "there is no such file, or it cannot be read");
+        result.absent.push_back(file.path);
+      }
+    }
+    checker.finish();
+    result.messages = checker.messages();
+    if (!result.has_errors()) {
+      result.spirv = checker.spirv();
+    }
+    const auto add_new = [](std::vector<std::string> &list, const std::string &path) {
+      if (std::ranges::find(list, path) == list.end()) {
+        list.push_back(path);
+      }
+    };
+    for (const std::unique_ptr<StageSource> &source : checker.compilation().sources) {
+      for (const StageSource::File &file : source->texts()) {
+        add_new(result.files, source->files()[file.index]);
+      }
+      for (const std::string &path : source->absent()) {
+        add_new(result.absent, path);
+      }
+    }
+  });
+  return result;
 }
 
 }  // namespace gnomon::shader_check

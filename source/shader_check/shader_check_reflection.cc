@@ -181,9 +181,11 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
 {
   gpu::ShaderInterface interface;
   with_large_stack([&] {
+    // The program refers to the sources until it is destroyed.
+    std::vector<std::unique_ptr<StageSource>> sources;
     GlslangProgram glslang;
     for (const gpu::ShaderSource &stage : stages) {
-      if (!glslang.add(stage, GlslangTarget::OpenGl)) {
+      if (!glslang.add(*sources.emplace_back(std::make_unique<StageSource>(stage)), CheckTarget::OpenGl)) {
         throw gpu::Error("shader '{}', {} stage:\n{}", name, to_string(stage.stage),
                          bounded_lines(stage.name_files(glslang.log())));
       }
@@ -204,7 +206,7 @@ StageVariables stage_variables(const gpu::ShaderDesc &desc, const gpu::ShaderFil
     Compilation compilation;
     compile(desc, files, compilation);
     if (!compilation.facts.empty()) {
-      const bool is_geometry = compilation.sources.front().stage == gpu::ShaderStage::Geometry;
+      const bool is_geometry = compilation.sources.front()->stage() == Stage::Geometry;
       result.inputs = variables(compilation.facts.front().inputs, is_geometry);
       result.outputs = variables(compilation.facts.back().outputs, false);
     }

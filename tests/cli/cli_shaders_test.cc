@@ -330,7 +330,7 @@ TEST_F(ShadersTest, AUsersShaderIsCheckedFromAnyFolderWithItsIncludesAndDefines)
   const std::string check = "shaders check user/shaders/sky.frag ";
   const Finished fine = run(check + "-I user/more -D COUNT=3");
   EXPECT_EQ(fine.status, 0) << fine.out << fine.err;
-  EXPECT_EQ(fine.out.find("1 programs, 1 variants, OpenGL 4.5 and Vulkan 1.2: 0 errors"), 0U) << fine.out;
+  EXPECT_EQ(fine.out.find("1 programs, 1 variants, Vulkan 1.2: 0 errors"), 0U) << fine.out;
 
   const Finished no_folder = run(check + "-D COUNT=3");
   EXPECT_EQ(no_folder.status, 1);

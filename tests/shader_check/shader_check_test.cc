@@ -78,13 +78,13 @@ TEST(CheckShader, MessageNamesShaderVariantAndTarget)
 {
   const ShaderTexts texts{{{"frag", VERSION + "void main() { color = 1; }\n"}}};
   CheckOptions options;
-  options.target = CheckTarget::Vulkan;
+  options.target = CheckTarget::Vulkan12;
   const std::vector<CheckMessage> messages =
       check_shader({"test", "", "", "frag", {"A", "B 2"}}, texts.files(), options);
   ASSERT_FALSE(messages.empty());
   EXPECT_EQ(messages[0].shader, "test");
   EXPECT_EQ(messages[0].variant, "A B 2");
-  EXPECT_EQ(messages[0].target, CheckTarget::Vulkan);
+  EXPECT_EQ(messages[0].target, CheckTarget::Vulkan12);
   EXPECT_EQ(messages[0].file, "frag");
   EXPECT_EQ(messages[0].line, 2);
 }
@@ -116,7 +116,7 @@ TEST(CheckShader, ErrorsOfOneTargetAreReportedForThatTargetOnly)
       COLOR + "\nlayout(location = 3) uniform float scale;\nvoid main() { color = vec4(scale); }\n";
   expect_clean(check_fragment(fragment));
   CheckOptions vulkan;
-  vulkan.target = CheckTarget::Vulkan;
+  vulkan.target = CheckTarget::Vulkan12;
   expect_one(check_fragment(fragment, vulkan), Severity::Error, "compile", "frag", 2);
   // And the other way round: a built-in that Vulkan renamed.
   const std::string vertex = "void main() { gl_Position = vec4(gl_VertexIndex); }\n";
@@ -178,7 +178,7 @@ TEST(CheckShader, SlotsAreSharedInVulkanAndPerKindInOpenGl)
                                "void main() { color = texture(a, b.xy); }\n";
   expect_clean(check_fragment(fragment));
   CheckOptions vulkan;
-  vulkan.target = CheckTarget::Vulkan;
+  vulkan.target = CheckTarget::Vulkan12;
   expect_one(check_fragment(fragment, vulkan), Severity::Error, "slot", "frag", 1);
   expect_one(
       check_fragment(COLOR + "layout(binding = 4) uniform a_block { vec4 a; };\n"

@@ -3,9 +3,22 @@
 
 #include "shader_check_log.hh"
 
+#include <glslang/MachineIndependent/localintermediate.h>
+
 #include <algorithm>
 
 namespace gnomon::shader_check {
+
+bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target)
+{
+  const bool is_done = glslang.add(*source, target);
+  sources.push_back(std::move(source));
+  SourceLines &added = lines.emplace_back(*sources.back());
+  const glslang::TIntermediate *parsed = glslang.intermediate(sources.size() - 1);
+  // Before version 3.30, `#line N` sets its own line.
+  added.read(parsed == nullptr || parsed->getProfile() == EEsProfile || parsed->getVersion() >= 330);
+  return is_done;
+}
 
 void Compilation::read_facts()
 {
@@ -16,16 +29,14 @@ void Compilation::read_facts()
 
 const std::string &Compilation::file(std::size_t stage, SourcePosition position) const
 {
-  const std::vector<std::string> &files = sources[stage].files;
+  const std::vector<std::string> &files = sources[stage]->files();
   return position.file < files.size() ? files[position.file] : files.front();
 }
 
 void compile(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files, Compilation &compilation)
 {
-  compilation.sources = gpu::preprocess(desc, files);
-  for (const gpu::ShaderSource &source : compilation.sources) {
-    compilation.lines.emplace_back(source);
-    if (!compilation.glslang.add(source, GlslangTarget::OpenGlSpirv)) {
+  for (const gpu::ShaderSource &source : gpu::preprocess(desc, files)) {
+    if (!compilation.add(std::make_unique<StageSource>(source), CheckTarget::OpenGlSpirv)) {
       throw gpu::Error("shader '{}', {} stage:\n{}", desc.name, to_string(source.stage),
                        bounded_lines(source.name_files(compilation.glslang.log())));
     }

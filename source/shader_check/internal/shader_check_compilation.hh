@@ -8,7 +8,8 @@ namespace gnomon::shader_check {
 
 /** One shader for one target: its sources, glslang's program, and facts about its stages. */
 struct Compilation {
-  std::vector<gpu::ShaderSource> sources;
+  /** In the order of stages. */
+  std::vector<std::unique_ptr<StageSource>> sources;
   std::vector<SourceLines> lines;
   GlslangProgram glslang;
   /** Parallel to sources; empty until linked. */
@@ -16,8 +17,10 @@ struct Compilation {
 
   [[nodiscard]] const glslang::TIntermediate *tree(std::size_t stage)
   {
-    return glslang.program().getIntermediate(glslang_language(sources[stage].stage));
+    return glslang.program().getIntermediate(glslang_language(sources[stage]->stage()));
   }
+  /** Compiles the next stage. */
+  bool add(std::unique_ptr<StageSource> source, CheckTarget target);
   void read_facts();
   /** Path of the file at a position in a stage. */
   [[nodiscard]] const std::string &file(std::size_t stage, SourcePosition position) const;

@@ -232,7 +232,7 @@ class FunctionLint : public TIntermTraverser {
       return;
     }
     const std::string start = first_name(operand);
-    const std::string_view line = lines_.line(position_of(symbol->getLoc()));
+    const std::string_view line = lines_.line(lines_.position(symbol->getLoc()));
     const std::size_t at = start.empty() ? std::string_view::npos : find_word(line, start);
     // The name occurs twice in the line, so the expression is ambiguous.
     if (at == std::string_view::npos || find_word(line, start, at + 1) != std::string_view::npos) {
@@ -274,7 +274,7 @@ class FunctionLint : public TIntermTraverser {
 
   void add(std::string_view rule, const glslang::TSourceLoc &loc, std::string text)
   {
-    findings_.push_back({rule, position_of(loc), std::move(text), false});
+    findings_.push_back({rule, lines_.position(loc), std::move(text), false});
   }
 
   FunctionFacts facts_;

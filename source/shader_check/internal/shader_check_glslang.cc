@@ -2,6 +2,7 @@
 #include "shader_check_glslang.hh"
 
 #include <glslang/Public/ResourceLimits.h>
+#include <glslang/build_info.h>
 
 #include <pthread.h>
 #include <exception>
@@ -10,8 +11,12 @@ namespace gnomon::shader_check {
 
 namespace {
 
-constexpr int glsl_version = 450;
+/** glslang prints columns from version 15 on. */
+#if GLSLANG_VERSION_GREATER_OR_EQUAL_TO(15, 0, 0)
+constexpr auto messages = EShMessages(EShMsgDefault | EShMsgDisplayErrorColumn);
+#else
 constexpr EShMessages messages = EShMsgDefault;
+#endif
 
 /** Creates glslang's process-wide tables at the first use, because that takes some milliseconds. */
 void initialize_glslang()
@@ -31,8 +36,8 @@ void initialize_glslang()
 
 /** Reserved address space; the system commits only the pages in use. */
 constexpr std::size_t stack_bytes = std::size_t(512) << 20U;
-/** An expression has at most one operator for each two bytes, and an operator takes less than 1 KiB of stack. */
-constexpr std::size_t source_bytes_max = stack_bytes / 512;
+// An expression has at most one operator for each two bytes, and an operator takes less than 1 KiB of stack.
+static_assert(stage_bytes_max <= stack_bytes / 512);
 
 struct StackedWork {
   const std::function<void()> &work;
@@ -71,12 +76,23 @@ void with_large_stack(const std::function<void()> &work)
   }
 }
 
-EShLanguage glslang_language(gpu::ShaderStage stage)
+EShLanguage glslang_language(Stage stage)
 {
   switch (stage) {
-    case gpu::ShaderStage::Vertex: return EShLangVertex;
-    case gpu::ShaderStage::Geometry: return EShLangGeometry;
-    case gpu::ShaderStage::Fragment: return EShLangFragment;
+    case Stage::Vertex: return EShLangVertex;
+    case Stage::TessControl: return EShLangTessControl;
+    case Stage::TessEvaluation: return EShLangTessEvaluation;
+    case Stage::Geometry: return EShLangGeometry;
+    case Stage::Task: return EShLangTask;
+    case Stage::Mesh: return EShLangMesh;
+    case Stage::Fragment: return EShLangFragment;
+    case Stage::Compute: return EShLangCompute;
+    case Stage::RayGeneration: return EShLangRayGen;
+    case Stage::Intersection: return EShLangIntersect;
+    case Stage::AnyHit: return EShLangAnyHit;
+    case Stage::ClosestHit: return EShLangClosestHit;
+    case Stage::Miss: return EShLangMiss;
+    case Stage::Callable: return EShLangCallable;
   }
   return EShLangVertex;
 }
@@ -87,34 +103,57 @@ GlslangProgram::GlslangProgram()
   program_ = std::make_unique<glslang::TProgram>();
 }
 
-bool GlslangProgram::add(const gpu::ShaderSource &source, GlslangTarget target)
+namespace {
+
+/** Sets the dialect of \a shader. \return the version of a text without `#version` */
+int set_target(glslang::TShader &shader, EShLanguage language, CheckTarget target)
 {
-  if (source.text.size() > source_bytes_max) {
-    log_ = fmt::format("ERROR: 0:1: the stage takes {} bytes with its includes, and at most {} are checked\n",
-                       source.text.size(), source_bytes_max);
+  // The version of GL_KHR_vulkan_glsl and GL_ARB_gl_spirv.
+  constexpr int dialect = 100;
+  constexpr int desktop_version = 110;
+  constexpr int es_version = 100;
+  const auto set_vulkan = [&](glslang::EShTargetClientVersion client, glslang::EShTargetLanguageVersion spirv) {
+    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, dialect);
+    shader.setEnvClient(glslang::EShClientVulkan, client);
+    shader.setEnvTarget(glslang::EShTargetSpv, spirv);
+  };
+  switch (target) {
+    case CheckTarget::OpenGl: break;
+    case CheckTarget::OpenGlSpirv:
+      shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientOpenGL, dialect);
+      shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
+      shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
+      break;
+    case CheckTarget::Es: return es_version;
+    case CheckTarget::Vulkan10: set_vulkan(glslang::EShTargetVulkan_1_0, glslang::EShTargetSpv_1_0); break;
+    case CheckTarget::Vulkan11: set_vulkan(glslang::EShTargetVulkan_1_1, glslang::EShTargetSpv_1_3); break;
+    case CheckTarget::Vulkan12: set_vulkan(glslang::EShTargetVulkan_1_2, glslang::EShTargetSpv_1_5); break;
+    case CheckTarget::Vulkan13: set_vulkan(glslang::EShTargetVulkan_1_3, glslang::EShTargetSpv_1_6); break;
+  }
+  return desktop_version;
+}
+
+}  // namespace
+
+bool GlslangProgram::add(StageSource &source, CheckTarget target)
+{
+  if (source.text().size() > stage_bytes_max) {
+    log_ = fmt::format("ERROR: {}:1: the stage takes {} bytes with its includes, and at most {} are checked\n",
+                       source.name().empty() ? "0" : source.name(), source.text().size(), stage_bytes_max);
     return false;
   }
-  const EShLanguage language = glslang_language(source.stage);
+  const EShLanguage language = glslang_language(source.stage());
   glslang::TShader &shader = *shaders_.emplace_back(std::make_unique<glslang::TShader>(language));
-  const char *text = source.text.c_str();
-  shader.setStrings(&text, 1);
-  if (target == GlslangTarget::VulkanSpirv) {
-    constexpr int vulkan_dialect = 100;
-    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, vulkan_dialect);
-    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
-    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-  }
-  else {
-    constexpr int opengl_dialect = 100;
-    const bool is_spirv = target == GlslangTarget::OpenGlSpirv;
-    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientOpenGL,
-                       is_spirv ? opengl_dialect : glsl_version);
-    shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
-    if (is_spirv) {
-      shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
-    }
-  }
-  const bool is_done = shader.parse(GetDefaultResources(), glsl_version, false, messages);
+  const char *text = source.text().c_str();
+  const int length = int(source.text().size());
+  const char *name = source.name().empty() ? nullptr : source.name().c_str();
+  shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
+  shader.setPreamble(source.preamble().c_str());
+  const int version = set_target(shader, language, target);
+  glslang::TShader::ForbidIncluder none;
+  glslang::TShader::Includer *includer = source.includer();
+  const bool is_done =
+      shader.parse(GetDefaultResources(), version, false, messages, includer == nullptr ? none : *includer);
   log_ = shader.getInfoLog();
   program_->addShader(&shader);
   return is_done;

@@ -2,7 +2,7 @@
 // glslang, for reflection and for checks.
 #pragma once
 
-#include "gpu_shader.hh"
+#include "shader_check_sources.hh"
 
 #include <glslang/Public/ShaderLang.h>
 
@@ -10,15 +10,6 @@
 #include <memory>
 
 namespace gnomon::shader_check {
-
-enum class GlslangTarget : std::uint8_t {
-  /** GLSL for glShaderSource. */
-  OpenGl,
-  /** SPIR-V 1.0 for OpenGL 4.5. */
-  OpenGlSpirv,
-  /** SPIR-V 1.5 for Vulkan 1.2. */
-  VulkanSpirv,
-};
 
 /**
  * Runs \a work on a thread with a stack of 512 MiB and waits for it. glslang recurses for each operator of an
@@ -29,7 +20,7 @@ enum class GlslangTarget : std::uint8_t {
  */
 void with_large_stack(const std::function<void()> &work);
 
-[[nodiscard]] EShLanguage glslang_language(gpu::ShaderStage stage);
+[[nodiscard]] EShLanguage glslang_language(Stage stage);
 
 /** The stages of one shader. Threads may use different programs concurrently. Call it only within with_large_stack. */
 class GlslangProgram {
@@ -37,10 +28,15 @@ class GlslangProgram {
   GlslangProgram();
 
   /**
-   * Compiles \a source, which must outlive the program. false on failure: log() has the reason. Sources of more than 1
-   * MiB are refused.
+   * Compiles \a source, which must outlive the program. false on failure: log() has the reason. Sources of more than
+   * stage_bytes_max are refused.
    */
-  bool add(const gpu::ShaderSource &source, GlslangTarget target);
+  bool add(StageSource &source, CheckTarget target);
+  /** The tree of a stage before link(), in the order of add(); nullptr: it was refused. */
+  [[nodiscard]] const glslang::TIntermediate *intermediate(std::size_t stage) const
+  {
+    return stage < shaders_.size() ? shaders_[stage]->getIntermediate() : nullptr;
+  }
   /** Call it after adding all stages. false on failure: log() has the reason. */
   bool link();
   /** Log of the last call. */

@@ -31,23 +31,86 @@ std::string without_precision(std::string_view text)
   return result += text.substr(from);
 }
 
-/** `ERROR: FILE:LINE: TEXT`, FILE a number. */
-std::optional<CompileMessage> compile_message(std::string_view line)
+/** Takes `ERROR: ` or `WARNING: `, with or without a word before it. */
+std::optional<Severity> take_severity(gpu::TextScanner &scanner)
+{
+  if (scanner.take("WARNING: ")) {
+    return Severity::Warning;
+  }
+  for (const std::string_view mark : {"ERROR: ", "INTERNAL ERROR: ", "UNIMPLEMENTED: "}) {
+    if (scanner.take(mark)) {
+      return Severity::Error;
+    }
+  }
+  return std::nullopt;
+}
+
+/** Takes `:LINE: ` or `:LINE:COLUMN: `. \return the line and the column, 0: none */
+std::optional<std::pair<int, int>> take_line(gpu::TextScanner &scanner)
+{
+  const bool has_colon = scanner.take(":");
+  const std::optional<int> line = has_colon ? scanner.take_number() : std::nullopt;
+  if (!line) {
+    return std::nullopt;
+  }
+  if (scanner.take(": ")) {
+    return std::pair(*line, 0);
+  }
+  const std::optional<int> column = scanner.take(":") ? scanner.take_number() : std::nullopt;
+  return column && scanner.take(": ") ? std::optional(std::pair(*line, *column)) : std::nullopt;
+}
+
+/** The line of `#version`. */
+SourcePosition version_position(const StageSource &source)
+{
+  SourcePosition position;
+  bool is_in_comment = false;
+  std::istringstream lines{source.text()};
+  int number = 1;
+  for (std::string line; std::getline(lines, line); number++) {
+    if (gpu::directive_of(without_comments(line, is_in_comment)) == "version") {
+      position.line = number;
+      break;
+    }
+  }
+  return position;
+}
+
+/** A number of errors, which the messages themselves show. */
+bool is_count(std::string_view text)
+{
+  gpu::TextScanner scanner(text);
+  return scanner.take_number() && scanner.take(" compilation errors");
+}
+
+/** `ERROR: NAME:LINE: TEXT` or, about the version, `ERROR: TEXT`. */
+std::optional<CompileMessage> compile_message(std::string_view line, StageSource &source)
 {
   gpu::TextScanner scanner(line);
-  const bool is_error = scanner.take("ERROR: ");
-  if (!is_error && !scanner.take("WARNING: ")) {
+  const std::optional<Severity> severity = take_severity(scanner);
+  if (!severity || is_count(scanner.rest())) {
     return std::nullopt;
   }
-  const std::optional<int> file = scanner.take_number();
-  const bool has_colon = scanner.take(":");
-  const std::optional<int> number = scanner.take_number();
-  if (!file || !has_colon || !number || !scanner.take(": ")) {
-    return std::nullopt;
+  const std::string_view rest = scanner.rest();
+  for (std::size_t at = rest.find(':'); at != std::string_view::npos; at = rest.find(':', at + 1)) {
+    gpu::TextScanner behind(rest.substr(at));
+    if (const auto place = take_line(behind)) {
+      return CompileMessage{*severity, "compile", source.position(rest.substr(0, at), place->first, place->second),
+                            without_precision(without_space_at_end(behind.rest()))};
+    }
   }
-  return CompileMessage{is_error ? Severity::Error : Severity::Warning,
-                        {std::size_t(*file), *number},
-                        without_precision(without_space_at_end(scanner.rest()))};
+  return CompileMessage{*severity, "compile", version_position(source), std::string(without_space_at_end(rest))};
+}
+
+/** Makes a message about an include that failed our own. */
+void name_include(CompileMessage &message)
+{
+  constexpr std::string_view start = "'#include' : ";
+  const std::size_t end = message.text.find(" for header name: ");
+  if (message.text.starts_with(start) && end != std::string::npos) {
+    message.text = message.text.substr(start.size(), end - start.size());
+    message.rule = "include";
+  }
 }
 
 /** Whether the message only follows from an earlier error. */
@@ -81,13 +144,18 @@ std::string bounded_lines(std::string_view text)
   return result;
 }
 
-std::vector<CompileMessage> compile_messages(std::string_view log)
+std::vector<CompileMessage> compile_messages(std::string_view log, StageSource &source)
 {
   std::vector<CompileMessage> messages;
   std::istringstream lines{std::string(log)};
   for (std::string line; std::getline(lines, line);) {
-    if (std::optional<CompileMessage> message = compile_message(line)) {
+    if (std::optional<CompileMessage> message = compile_message(line, source)) {
+      name_include(*message);
       messages.push_back(std::move(*message));
+    }
+    else if (!messages.empty() && !line.empty() && !line.starts_with("ERROR: ")) {
+      // The rest of a message of several lines.
+      messages.back().text += fmt::format(" {}", gpu::TextScanner(line).skip_space().rest());
     }
   }
   const bool has_cause = std::ranges::any_of(messages, [](const CompileMessage &message) {
@@ -101,22 +169,16 @@ std::vector<CompileMessage> compile_messages(std::string_view log)
 
 std::vector<LinkMessage> link_messages(std::string_view log)
 {
-  // `ERROR: Linking STAGE stage: TEXT`, followed by indented lines that begin with the name of the faulty declaration.
+  // `ERROR: Linking STAGE stage: TEXT`, followed by lines about the same mistake.
   std::vector<LinkMessage> messages;
   std::istringstream lines{std::string(log)};
   for (std::string line; std::getline(lines, line);) {
     gpu::TextScanner scanner(line);
-    if (scanner.take("ERROR: ")) {
-      messages.push_back({std::string(without_space_at_end(scanner.rest())), ""});
+    if (const std::optional<Severity> severity = take_severity(scanner)) {
+      messages.push_back({*severity, std::string(without_space_at_end(scanner.rest()))});
     }
     else if (!messages.empty() && !line.empty()) {
-      LinkMessage &message = messages.back();
-      const bool is_indented = line.front() == ' ' || line.front() == '\t';
-      const std::string_view text = scanner.skip_space().rest();
-      message.text += fmt::format(" {}", text);
-      if (message.name.empty() && is_indented) {
-        message.name = scanner.take_word();
-      }
+      messages.back().text += fmt::format(" {}", without_space_at_end(scanner.skip_space().rest()));
     }
   }
   return messages;

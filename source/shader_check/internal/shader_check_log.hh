@@ -14,17 +14,18 @@ namespace gnomon::shader_check {
 
 struct CompileMessage {
   Severity severity = Severity::Error;
+  std::string_view rule;
   SourcePosition position;
   std::string text;
 };
 
-/** The messages of a compiler's log that have a line, without those that only follow from an earlier error. */
-[[nodiscard]] std::vector<CompileMessage> compile_messages(std::string_view log);
+/** The messages of glslang's log about \a source, in its order, without those that only follow from an earlier error.
+ */
+[[nodiscard]] std::vector<CompileMessage> compile_messages(std::string_view log, StageSource &source);
 
 struct LinkMessage {
+  Severity severity = Severity::Error;
   std::string text;
-  /** Name of the faulty declaration; empty if unknown. */
-  std::string name;
 };
 
 [[nodiscard]] std::vector<LinkMessage> link_messages(std::string_view log);

@@ -4,10 +4,50 @@
 #include "gpu_shader_text.hh"
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
 #include <limits>
-#include <sstream>
+#include <utility>
 
 namespace gnomon::shader_check {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** Begins glslang's names of our files. No file name that a user writes in `#line` begins with it. */
+constexpr char name_mark = '\x02';
+
+/** Files may include themselves under conditions, so only the depth shows an include without an end. */
+constexpr std::size_t include_depth_max = 200;
+
+std::string name_of(std::size_t file)
+{
+  return name_mark + std::to_string(file);
+}
+
+/** The file of a name that name_of() made. */
+std::optional<std::size_t> file_named(std::string_view name)
+{
+  std::size_t file = 0;
+  if (!name.starts_with(name_mark) ||
+      std::from_chars(name.data() + 1, name.data() + name.size(), file).ptr != name.data() + name.size()) {
+    return std::nullopt;
+  }
+  return file;
+}
+
+Stage stage_of(gpu::ShaderStage stage)
+{
+  switch (stage) {
+    case gpu::ShaderStage::Vertex: return Stage::Vertex;
+    case gpu::ShaderStage::Geometry: return Stage::Geometry;
+    case gpu::ShaderStage::Fragment: break;
+  }
+  return Stage::Fragment;
+}
+
+}  // namespace
 
 std::size_t find_word(std::string_view text, std::string_view word, std::size_t from)
 {
@@ -21,12 +61,6 @@ std::size_t find_word(std::string_view text, std::string_view word, std::size_t 
   return std::string_view::npos;
 }
 
-namespace {
-
-/**
- * \a line without comments. \a is_in_comment: whether the line begins within a comment; on return, whether it ends
- * within one.
- */
 std::string without_comments(std::string_view line, bool &is_in_comment)
 {
   // Most lines have no comment.
@@ -45,6 +79,7 @@ std::string without_comments(std::string_view line, bool &is_in_comment)
     else if (two == "/*") {
       is_in_comment = true;
       i++;
+      code += ' ';
     }
     else if (two == "//") {
       break;
@@ -56,61 +91,320 @@ std::string without_comments(std::string_view line, bool &is_in_comment)
   return code;
 }
 
-/** The position set by a line `#line LINE FILE` of preprocess(); empty for other lines. */
-std::optional<SourcePosition> position_set_by(std::string_view text)
+std::string_view without_byte_order_mark(std::string_view text)
 {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  return text.substr(text.starts_with(mark) ? mark.size() : 0);
+}
+
+/** Finds the includes of one stage for glslang. */
+class StageSource::Includer : public glslang::TShader::Includer {
+ public:
+  Includer(StageSource &source, const gpu::ShaderFiles &files, std::span<const std::string> folders)
+      : source_(source), files_(files), folders_(folders)
+  {
+  }
+
+  IncludeResult *includeLocal(const char *named, const char *includer, std::size_t depth) override
+  {
+    const std::size_t file = file_named(includer).value_or(0);
+    const fs::path beside = fs::path(source_.files_[file]).parent_path() / named;
+    return find(named, depth, &beside);
+  }
+  IncludeResult *includeSystem(const char *named, const char *, std::size_t depth) override
+  {
+    return find(named, depth, nullptr);
+  }
+  void releaseInclude(IncludeResult *result) override
+  {
+    if (result != nullptr && result->userData != nullptr) {
+      delete static_cast<std::string *>(result->userData);
+    }
+    delete result;
+  }
+
+ private:
+  /** \a beside: is tried before the folders. */
+  IncludeResult *find(const std::string &named, std::size_t depth, const fs::path *beside)
+  {
+    if (depth > include_depth_max) {
+      return failed(fmt::format("'{}' is included at a depth of more than {}", named, include_depth_max));
+    }
+    const auto found = [&](const fs::path &path) { return open(path.lexically_normal().string()); };
+    if (beside != nullptr) {
+      if (IncludeResult *result = found(*beside)) {
+        return result;
+      }
+    }
+    for (const std::string &folder : folders_) {
+      if (IncludeResult *result = found(fs::path(folder) / named)) {
+        return result;
+      }
+    }
+    if (beside != nullptr) {
+      return failed(fmt::format("no shader file '{}'", beside->lexically_normal().string()));
+    }
+    // glslang asks so after a local include that failed, too. Its reason is the better one.
+    const std::string earlier = std::exchange(reason_, {});
+    return failure(earlier.empty() ? fmt::format("no shader file '{}' in the folders of -I", named) : earlier);
+  }
+
+  IncludeResult *open(const std::string &path)
+  {
+    std::optional<std::string_view> text = files_(path);
+    if (!text) {
+      if (std::ranges::find(source_.absent_, path) == source_.absent_.end()) {
+        source_.absent_.push_back(path);
+      }
+      return nullptr;
+    }
+    const std::size_t file = source_.file_of(path);
+    text = source_.unmarked(file, *text);
+    if (std::ranges::find(source_.texts_, file, &File::index) == source_.texts_.end()) {
+      source_.texts_.push_back({file, *text});
+    }
+    bytes_ += text->size();
+    if (bytes_ + source_.text_.size() > stage_bytes_max) {
+      return failed(fmt::format("the stage takes more than {} bytes with its includes", stage_bytes_max));
+    }
+    reason_.clear();
+    return new IncludeResult(name_of(file), text->data(), text->size(), nullptr);
+  }
+
+  IncludeResult *failed(const std::string &reason)
+  {
+    reason_ = reason;
+    return failure(reason);
+  }
+  static IncludeResult *failure(std::string reason)
+  {
+    auto *text = new std::string(std::move(reason));
+    return new IncludeResult("", text->data(), text->size(), text);
+  }
+
+  StageSource &source_;
+  const gpu::ShaderFiles &files_;
+  std::span<const std::string> folders_;
+  std::string reason_;
+  std::size_t bytes_ = 0;
+};
+
+StageSource::StageSource(gpu::ShaderSource source)
+    : stage_(stage_of(source.stage)), text_(std::move(source.text)), files_(std::move(source.files))
+{
+  texts_.push_back({0, text_});
+}
+
+StageSource::StageSource(Stage stage, std::string path, std::string_view text, const std::vector<std::string> &defines,
+                         const gpu::ShaderFiles &files, std::span<const std::string> folders)
+    : stage_(stage),
+      // As glslc does, so that a file need not ask for the extension.
+      preamble_("#extension GL_GOOGLE_include_directive : enable\n"),
+      name_(name_of(0)),
+      includer_(std::make_unique<Includer>(*this, files, folders))
+{
+  for (const std::string &define : defines) {
+    preamble_ += "#define " + define + "\n";
+  }
+  text_ = unmarked(file_of(path), text);
+  texts_.push_back({0, text_});
+}
+
+StageSource::~StageSource() = default;
+
+glslang::TShader::Includer *StageSource::includer()
+{
+  return includer_.get();
+}
+
+std::size_t StageSource::file_of(std::string_view path)
+{
+  const auto [entry, is_new] = indices_.try_emplace(std::string(path), files_.size());
+  if (is_new) {
+    files_.emplace_back(path);
+  }
+  return entry->second;
+}
+
+std::string_view StageSource::unmarked(std::size_t file, std::string_view text)
+{
+  const std::string_view plain = without_byte_order_mark(text);
+  if (plain.size() < text.size() && std::ranges::find(marked_, file) == marked_.end()) {
+    marked_.push_back(file);
+  }
+  return plain;
+}
+
+SourcePosition StageSource::position(const glslang::TSourceLoc &loc)
+{
+  return loc.name == nullptr ? position(std::to_string(std::max(loc.string, 0)), loc.line, loc.column)
+                             : position(std::string_view(loc.name->data(), loc.name->size()), loc.line, loc.column);
+}
+
+SourcePosition StageSource::position(std::string_view name, int line, int column)
+{
+  SourcePosition position{0, std::max(line, 1), std::max(column, 0)};
+  std::size_t number = 0;
+  if (const std::optional<std::size_t> file = file_named(name)) {
+    position.file = *file < files_.size() ? *file : 0;
+  }
+  else if (std::from_chars(name.data(), name.data() + name.size(), number).ptr == name.data() + name.size()) {
+    // The number of a string, which no file of the user has.
+    position.file = includer_ == nullptr && number < files_.size() ? number : 0;
+  }
+  else if (!name.empty()) {
+    position.file = file_of(name);
+  }
+  return position;
+}
+
+namespace {
+
+struct LineDirective {
+  int line = 1;
+  /** A name, or a number; empty: the file stays. */
+  std::string_view file;
+};
+
+/** `#line LINE`, `#line LINE NUMBER` or `#line LINE "NAME"`; empty for other lines. */
+std::optional<LineDirective> line_directive(std::string_view text)
+{
+  if (gpu::directive_of(text) != "line") {
+    return std::nullopt;
+  }
   gpu::TextScanner scanner(text);
-  if (!scanner.take("#line ")) {
+  scanner.skip_space().take("#");
+  scanner.skip_space().take("line");
+  const std::optional<int> line = scanner.skip_space().take_number();
+  if (!line) {
     return std::nullopt;
   }
-  const std::optional<int> line = scanner.take_number();
-  const bool has_space = scanner.take(" ");
-  const std::optional<int> file = scanner.take_number();
-  if (!line || !has_space || !file || !scanner.rest().empty()) {
-    return std::nullopt;
-  }
-  return SourcePosition{std::size_t(*file), *line};
+  LineDirective directive{*line, {}};
+  const bool is_name = scanner.skip_space().take("\"");
+  directive.file = is_name ? scanner.rest().substr(0, scanner.rest().find('"')) : scanner.take_word();
+  return directive;
+}
+
+constexpr std::string_view comment_mark = "shader-check: ";
+
+std::optional<RuleLevel> rule_level(std::string_view word)
+{
+  return word == "off"       ? std::optional(RuleLevel::Off)
+         : word == "warning" ? std::optional(RuleLevel::Warning)
+         : word == "error"   ? std::optional(RuleLevel::Error)
+                             : std::nullopt;
+}
+
+std::uint64_t key_of(SourcePosition position)
+{
+  return std::uint64_t(position.file) << 32U | std::uint32_t(position.line);
 }
 
 }  // namespace
 
-SourceLines::SourceLines(const gpu::ShaderSource &source)
+void SourceLines::read(bool line_sets_next)
 {
-  std::istringstream stream(source.text);
-  SourcePosition position;
-  bool is_in_comment = false;
-  for (std::string text; std::getline(stream, text);) {
-    if (const std::optional<SourcePosition> set = position_set_by(text)) {
-      position = *set;
+  for (const StageSource::File &file : source_.texts()) {
+    read_levels(file);
+    SourcePosition position{file.index, 1, 0};
+    bool is_in_comment = false;
+    for (std::string_view rest = file.text; !rest.empty();) {
+      const std::string_view text = rest.substr(0, rest.find('\n'));
+      rest.remove_prefix(std::min(text.size() + 1, rest.size()));
+      if (const std::optional<LineDirective> set = is_in_comment ? std::nullopt : line_directive(text)) {
+        const SourcePosition known = set->file.empty() ? position : source_.position(set->file, 1, 0);
+        position.file = known.file;
+        position.line = set->line + (line_sets_next || set->line == std::numeric_limits<int>::max() ? 0 : 1);
+        continue;
+      }
+      by_position_.try_emplace(key_of(position), lines_.size());
+      lines_.push_back({position, text, without_comments(text, is_in_comment)});
+      // A `#line` may have any number.
+      position.line += position.line < std::numeric_limits<int>::max() ? 1 : 0;
+    }
+  }
+}
+
+void SourceLines::read_levels(const StageSource::File &file)
+{
+  for (std::size_t at = file.text.find(comment_mark); at != std::string_view::npos;
+       at = file.text.find(comment_mark, at + 1)) {
+    std::string_view rest = file.text.substr(at + comment_mark.size());
+    const std::string_view rule = rest.substr(0, rest.find_first_of("=,\r\n \t"));
+    if (!rest.substr(rule.size()).starts_with('=')) {
       continue;
     }
-    std::string code = without_comments(text, is_in_comment);
-    lines_.push_back({position, std::move(text), std::move(code)});
-    // A `#line` in the user's source may have any number.
-    position.line += position.line < std::numeric_limits<int>::max() ? 1 : 0;
+    rest.remove_prefix(rule.size() + 1);
+    gpu::TextScanner scanner(rest);
+    const std::string_view word = scanner.take_word();
+    if (const std::optional<RuleLevel> level = rule_level(word)) {
+      levels_[file.index].insert_or_assign(std::string(rule), *level);
+    }
   }
+}
+
+std::optional<RuleLevel> SourceLines::level(std::size_t file, std::string_view rule) const
+{
+  const auto levels = levels_.find(file);
+  if (levels == levels_.end()) {
+    return std::nullopt;
+  }
+  const auto found = levels->second.find(rule);
+  return found == levels->second.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool SourceLines::is_excused(SourcePosition position, std::string_view rule) const
+{
+  const std::string_view text = line(position);
+  const std::size_t at = text.find(comment_mark);
+  if (at == std::string_view::npos) {
+    return false;
+  }
+  const std::string_view rest = text.substr(at + comment_mark.size());
+  return rest.starts_with(rule) && (rest.size() == rule.size() ||
+                                    std::string_view(", \t\r.;:").find(rest[rule.size()]) != std::string_view::npos);
 }
 
 std::string_view SourceLines::line(SourcePosition position) const
 {
-  const auto found = std::ranges::find(lines_, position, &Line::position);
-  return found == lines_.end() ? std::string_view() : std::string_view(found->text);
+  const auto found = by_position_.find(key_of(position));
+  return found == by_position_.end() ? std::string_view() : lines_[found->second].text;
+}
+
+std::optional<SourcePosition> SourceLines::find_name(std::string_view name, std::string_view keyword) const
+{
+  if (by_word_.empty()) {
+    for (std::size_t i = 0; i < lines_.size(); i++) {
+      const std::string_view code = lines_[i].code;
+      for (std::size_t at = 0; at < code.size();) {
+        const auto end = std::find_if_not(code.begin() + std::ptrdiff_t(at), code.end(), gpu::is_word_character);
+        const std::string_view word = code.substr(at, std::size_t(end - code.begin()) - at);
+        if (!word.empty() && (word[0] < '0' || word[0] > '9')) {
+          std::vector<std::size_t> &found = by_word_[word];
+          if (found.empty() || found.back() != i) {
+            found.push_back(i);
+          }
+        }
+        at += std::max<std::size_t>(word.size(), 1);
+      }
+    }
+  }
+  const auto found = by_word_.find(name);
+  if (found == by_word_.end()) {
+    return std::nullopt;
+  }
+  for (const std::size_t i : found->second) {
+    const std::string_view code = lines_[i].code;
+    if (find_word(code.substr(0, find_word(code, name)), keyword) != std::string_view::npos) {
+      return lines_[i].position;
+    }
+  }
+  return lines_[found->second.front()].position;
 }
 
 SourcePosition SourceLines::find_declaration(std::string_view name, std::string_view keyword) const
 {
-  const Line *first = nullptr;
-  for (const Line &line : lines_) {
-    const std::size_t at = find_word(line.code, name);
-    if (at == std::string_view::npos) {
-      continue;
-    }
-    if (find_word(std::string_view(line.code).substr(0, at), keyword) != std::string_view::npos) {
-      return line.position;
-    }
-    first = first == nullptr ? &line : first;
-  }
-  return first == nullptr ? SourcePosition() : first->position;
+  return find_name(name, keyword).value_or(SourcePosition());
 }
 
 }  // namespace gnomon::shader_check

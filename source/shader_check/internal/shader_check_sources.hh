@@ -1,41 +1,163 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gpu_shader.hh"
+#include "shader_check.hh"
+
+#include <glslang/Include/Common.h>
+#include <glslang/Public/ShaderLang.h>
+
+#include <memory>
+#include <string_view>
+#include <unordered_map>
 
 namespace gnomon::shader_check {
 
-/** A line of a source. */
+/** A place in a source. */
 struct SourcePosition {
-  /** Index in gpu::ShaderSource::files. */
+  /** Index in StageSource::files. */
   std::size_t file = 0;
   /** From 1. */
   int line = 1;
-
-  auto operator<=>(const SourcePosition &) const = default;
+  /** From 1; 0: unknown. */
+  int column = 0;
 };
 
 /** Offset of the first whole word \a word in \a text at or after \a from; npos if there is none. */
 [[nodiscard]] std::size_t find_word(std::string_view text, std::string_view word, std::size_t from = 0);
 
+/**
+ * \a line without comments. \a is_in_comment: whether the line begins within a comment; on return, whether it ends
+ * within one.
+ */
+[[nodiscard]] std::string without_comments(std::string_view line, bool &is_in_comment);
+
+/** \a text without the byte-order mark (U+FEFF in UTF-8) at its begin. */
+[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
+
+/** The text of one stage as glslang gets it, the files that it consists of, and their names in messages. */
+class StageSource {
+ public:
+  /** A stage whose includes gpu::preprocess() has put in place. Its `#line` directives number its files. */
+  explicit StageSource(gpu::ShaderSource source);
+  /**
+   * The file \a path with \a text. glslang asks for its includes: of `"NAME"` beside the including file and then in \a
+   * folders, of `<NAME>` in \a folders only. \a files must outlive the object.
+   */
+  StageSource(Stage stage, std::string path, std::string_view text, const std::vector<std::string> &defines,
+              const gpu::ShaderFiles &files, std::span<const std::string> folders);
+  ~StageSource();
+  StageSource(StageSource &&other) = delete;
+
+  [[nodiscard]] Stage stage() const
+  {
+    return stage_;
+  }
+  [[nodiscard]] const std::string &text() const
+  {
+    return text_;
+  }
+  /** Precedes the text, and has no lines in messages. */
+  [[nodiscard]] const std::string &preamble() const
+  {
+    return preamble_;
+  }
+  /** The name of the text for glslang; empty if its files have numbers. */
+  [[nodiscard]] const std::string &name() const
+  {
+    return name_;
+  }
+  /** nullptr: the text has its includes. */
+  [[nodiscard]] glslang::TShader::Includer *includer();
+
+  /** Names of files: those that were read and those that `#line` names. */
+  [[nodiscard]] const std::vector<std::string> &files() const
+  {
+    return files_;
+  }
+  /** Files that were read, with their indices in files(), in the order of their first inclusion. */
+  struct File {
+    std::size_t index;
+    std::string_view text;
+  };
+  [[nodiscard]] const std::vector<File> &texts() const
+  {
+    return texts_;
+  }
+  /** Indices in files() of files that begin with a byte-order mark. Their texts here are without it. */
+  [[nodiscard]] const std::vector<std::size_t> &marked() const
+  {
+    return marked_;
+  }
+  /** Paths at which an include was sought and not found. */
+  [[nodiscard]] const std::vector<std::string> &absent() const
+  {
+    return absent_;
+  }
+
+  [[nodiscard]] SourcePosition position(const glslang::TSourceLoc &loc);
+  /** \a name: as glslang prints it. */
+  [[nodiscard]] SourcePosition position(std::string_view name, int line, int column);
+  /** The index in files() of \a path, which is added if it is new. */
+  [[nodiscard]] std::size_t file_of(std::string_view path);
+
+ private:
+  class Includer;
+
+  /** \a text without a byte-order mark, which it notes. */
+  std::string_view unmarked(std::size_t file, std::string_view text);
+
+  Stage stage_;
+  std::string text_;
+  std::string preamble_;
+  std::string name_;
+  std::vector<std::string> files_;
+  std::unordered_map<std::string, std::size_t> indices_;
+  std::vector<File> texts_;
+  std::vector<std::size_t> marked_;
+  std::vector<std::string> absent_;
+  std::unique_ptr<Includer> includer_;
+};
+
 /** The lines of a stage and its includes, with their files. */
 class SourceLines {
  public:
-  explicit SourceLines(const gpu::ShaderSource &source);
+  explicit SourceLines(StageSource &source) : source_(source) {}
 
+  /** Call it before other functions, and once glslang has read the includes. */
+  void read(bool line_sets_next);
+
+  [[nodiscard]] SourcePosition position(const glslang::TSourceLoc &loc) const
+  {
+    return source_.position(loc);
+  }
+  /** Whether a comment on the line names \a rule: `// shader-check: RULE, reason`. */
+  [[nodiscard]] bool is_excused(SourcePosition position, std::string_view rule) const;
+  /** The level that a comment in a file gives to \a rule: `// shader-check: RULE=off`, `=warning` or `=error`. */
+  [[nodiscard]] std::optional<RuleLevel> level(std::size_t file, std::string_view rule) const;
   /** The line as written; empty if there is none. */
   [[nodiscard]] std::string_view line(SourcePosition position) const;
   /** The first line with \a name as a word outside of comments; preferably one where \a keyword precedes it. */
   [[nodiscard]] SourcePosition find_declaration(std::string_view name, std::string_view keyword) const;
+  /** As find_declaration(); empty if no line has \a name. */
+  [[nodiscard]] std::optional<SourcePosition> find_name(std::string_view name, std::string_view keyword) const;
 
  private:
   struct Line {
     SourcePosition position;
-    std::string text;
+    std::string_view text;
     /** Without comments. */
     std::string code;
   };
+
+  StageSource &source_;
+  void read_levels(const StageSource::File &file);
+
   std::vector<Line> lines_;
+  std::map<std::size_t, RuleLevels> levels_;
+  /** Indices in lines_ by file and line. */
+  std::unordered_map<std::uint64_t, std::size_t> by_position_;
+  /** Indices in lines_ by word. Made when the first word is sought. */
+  mutable std::unordered_map<std::string_view, std::vector<std::size_t>> by_word_;
 };
 
 }  // namespace gnomon::shader_check

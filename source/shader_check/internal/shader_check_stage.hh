@@ -34,7 +34,19 @@ struct Declaration {
   int slot = -1;
   int location = -1;
   int location_count = 1;
+  /** The first component within the location, and the number of components; 0: all four. */
+  int component = 0;
+  int component_count = 0;
+  /** Whether the outermost array holds the vertices or primitives that a stage works on. */
+  bool is_arrayed = false;
+  /** Whether transform feedback captures the output. */
+  bool is_captured = false;
+  /** Whether it is a member of a block of inputs or outputs: its use is known for the whole block only. */
+  bool is_member = false;
   bool is_used = false;
+  bool is_push_constant = false;
+  /** Whether it is an image, which OpenGL numbers apart from textures. */
+  bool is_image = false;
   /** Blocks. */
   std::vector<BlockMember> members;
 };

@@ -19,11 +19,6 @@ using glslang::TIntermUnary;
 using glslang::TOperator;
 using glslang::TVisit;
 
-SourcePosition position_of(const glslang::TSourceLoc &loc)
-{
-  return {std::size_t(std::max(loc.string, 0)), std::max(loc.line, 1)};
-}
-
 std::string text_of(const glslang::TString &text)
 {
   return {text.data(), text.size()};

@@ -13,9 +13,8 @@
 
 namespace gnomon::shader_check {
 
-[[nodiscard]] SourcePosition position_of(const glslang::TSourceLoc &loc);
 [[nodiscard]] std::string text_of(const glslang::TString &text);
-/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, the vertices of a geometry shader. */
+/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, the vertices of a primitive. */
 [[nodiscard]] std::string type_name(const glslang::TType &type, bool is_arrayed = false);
 
 /**

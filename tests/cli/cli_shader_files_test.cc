@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// `gnomon shaders check FILES`: what the program adds to check_program: names of files, outputs, processes, the cache.
+#include "cli_process.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+
+namespace gnomon {
+namespace {
+
+using test::Finished;
+
+class ShaderFilesTest : public test::ProgramTest {
+ protected:
+  Finished check(const std::string &arguments)
+  {
+    return run("shaders check " + arguments);
+  }
+  void write_file(const std::string &path, const std::string &text)
+  {
+    std::filesystem::create_directories((folder / path).parent_path());
+    write(path, text);
+  }
+};
+
+const std::string fragment_head = "#version 450\nlayout(location = 0) out vec4 c;\n";
+
+TEST_F(ShaderFilesTest, AFileOfAnotherKindIsAnErrorOfThatFileAlone)
+{
+  write("good.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  write("bad.comp", "#version 450\nvoid main() { oops; }\n");
+  write("scene.hlsl", "float4 main() : SV_Target { return 1; }\n");
+  write("notes.glsl", "float f;\n");
+  const Finished finished = check("good.frag scene.hlsl notes.glsl missing.rgen bad.comp");
+  EXPECT_EQ(finished.status, 1);
+  for (const std::string line :
+       {"scene.hlsl:1: error: HLSL is not checked [stage]", "notes.glsl:1: error: its name ends in none of",
+        "missing.rgen:1: error: there is no such file", "bad.comp:2: error: 'oops'", "3 programs, 3 variants"}) {
+    EXPECT_NE(finished.out.find(line), std::string::npos) << line << " is not in:\n" << finished.out;
+  }
+  EXPECT_EQ(finished.out.find("good.frag:"), std::string::npos) << finished.out;
+}
+
+TEST_F(ShaderFilesTest, StagesBetweenThatLieBesideBelongToTheProgram)
+{
+  for (const auto &[before, after] : {std::pair("p.", ""), std::pair("p.", ".glsl"), std::pair("p_", ".glsl")}) {
+    const auto path = [&](const std::string &stage) { return before + stage + after; };
+    write(path("vert"), "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
+    write(path("geom"),
+          "#version 450\nlayout(points) in;\nlayout(points, max_vertices = 1) out;\n"
+          "layout(location = 3) out vec3 n;\nvoid main() { n = vec3(1); EmitVertex(); }\n");
+    write(path("frag"), fragment_head + "layout(location = 3) in vec3 n;\nvoid main() { c = vec4(n, 1); }\n");
+    EXPECT_EQ(check(path("frag") + " " + path("vert")).status, 0) << path("geom");
+    EXPECT_EQ(check(path("vert") + " " + path("geom") + " " + path("frag")).status, 0);
+    std::filesystem::remove(folder / path("geom"));
+    EXPECT_EQ(check(path("vert") + " " + path("frag")).status, 1) << "no stage writes the input";
+  }
+}
+
+TEST_F(ShaderFilesTest, OutputIsJsonOrSarifWhateverTheCompilerPrints)
+{
+  // glslang prints about old versions to stdout. Names and texts may be no UTF-8.
+  write("old.frag", "#version 110\nvoid main() { gl_FragColor = oops; }\n");
+  write("latin.frag", "#version 450\n#error gr\xFC\xDF\"e\\\n// \xFF\nvoid main() { }\n");
+  write("empty.frag", "");
+  write("binary.frag", std::string("\0\x01\x02\xFF#version\n", 13));
+  for (const std::string target : {"auto", "opengl", "opengl-spirv", "es", "vulkan", "vulkan1.0", "all"}) {
+    for (const std::string format : {"json", "sarif"}) {
+      const Finished finished =
+          check("old.frag latin.frag empty.frag binary.frag --format " + format + " --target " + target);
+      EXPECT_EQ(finished.status, 1) << finished.err;
+      EXPECT_TRUE(nlohmann::json::accept(finished.out)) << format << target << finished.out;
+    }
+  }
+}
+
+TEST_F(ShaderFilesTest, AProgramThatTakesTooLongIsEndedAndOthersAreChecked)
+{
+  std::string macros = "#define A0 1.0 +\n";
+  for (int i = 1; i < 40; i++) {
+    macros += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" + std::to_string(i - 1) + "\n";
+  }
+  write("endless.frag", fragment_head + macros + "void main() { c = vec4(A39 1.0); }\n");
+  write("good.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  write("bad.frag", fragment_head + "void main() { c = oops; }\n");
+  const auto start = std::chrono::steady_clock::now();
+  const Finished finished = check("endless.frag good.frag bad.frag --time-limit 0.5");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20.0);
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.out.find("endless.frag:1: error: the check of this program takes more than "), std::string::npos)
+      << finished.out;
+  EXPECT_NE(finished.out.find("[limit]"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("bad.frag:3: error: 'oops'"), std::string::npos) << finished.out;
+  EXPECT_EQ(check("good.frag --time-limit 0").status, 2);
+}
+
+TEST_F(ShaderFilesTest, SpirvIsWritten)
+{
+  write("a.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
+  write("a.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  const auto is_spirv = [&](const std::string &path) {
+    return std::filesystem::exists(folder / path) && read(path).starts_with("\x03\x02\x23\x07");
+  };
+  EXPECT_EQ(check("a.frag -o one.spv").status, 0);
+  EXPECT_TRUE(is_spirv("one.spv"));
+  EXPECT_EQ(check("a.vert a.frag -o all").status, 0);
+  EXPECT_TRUE(is_spirv("all/a.vert.spv") && is_spirv("all/a.frag.spv"));
+  write("a.frag", "broken");
+  EXPECT_EQ(check("a.frag -o broken.spv").status, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder / "broken.spv"));
+  EXPECT_EQ(check("a.frag -o a.frag").status, 2) << "an input is not overwritten";
+  EXPECT_EQ(read("a.frag"), "broken");
+  EXPECT_EQ(check("a.vert -o x.spv --target all").status, 2);
+}
+
+TEST_F(ShaderFilesTest, DepfileNamesWhatWasRead)
+{
+  write_file("in clude/b.glsl", "float b = 1.0;\n");
+  write("a.frag",
+        "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"b.glsl\"\n"
+        "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(b); }\n");
+  const std::string text = "a.spv: \\\n  a.frag \\\n  in\\ clude/b.glsl\n";
+  const Finished finished = check("a.frag -I 'in clude' -MD -MF a.d -o a.spv");
+  EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
+  EXPECT_EQ(read("a.d"), text);
+  EXPECT_EQ(check("a.frag -I 'in clude' -MD -MF b.d -MT a.spv").status, 0);
+  EXPECT_EQ(read("b.d"), text);
+  EXPECT_EQ(check("a.frag -I 'in clude' --depfile c.d --depfile-target a.spv").status, 0);
+  EXPECT_EQ(read("c.d"), text);
+  EXPECT_EQ(check("a.frag -MF d.d").status, 2) << "no target";
+  EXPECT_EQ(check("a.frag -MD -o a.spv").status, 2) << "no depfile";
+}
+
+TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
+{
+  write_file("lib/b.glsl", "float b = 1.0;\n");
+  write("a.frag",
+        "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"b.glsl\"\n"
+        "layout(location = 0) in vec3 v;\nlayout(location = 0) out vec4 c;\n"
+        "#ifdef BAD\nbad\n#endif\nvoid main() { c = vec4(b * acos(dot(v, v.zyx))); }\n");
+  // Without the summary's time.
+  const auto result = [&](const std::string &arguments) {
+    const Finished finished = check("a.frag -I lib --cache cache " + arguments);
+    return std::to_string(finished.status) + finished.out.substr(0, finished.out.rfind(" warnings, "));
+  };
+  const auto entries = [&] {
+    const std::filesystem::directory_iterator begin(folder / "cache");
+    return std::distance(begin, std::filesystem::directory_iterator());
+  };
+  const std::string first = result("");
+  EXPECT_EQ(first.find("0a.frag:9: warning: acos"), 0U) << first;
+  EXPECT_EQ(entries(), 1);
+  const std::filesystem::path entry = *std::filesystem::directory_iterator(folder / "cache");
+  const auto time = std::filesystem::last_write_time(entry);
+  EXPECT_EQ(result(""), first);
+  EXPECT_EQ(std::filesystem::last_write_time(entry), time) << "it was read, not made again";
+  EXPECT_EQ(entries(), 1);
+  EXPECT_EQ(result("-D BAD")[0], '1');
+  EXPECT_EQ(result("-Werror")[0], '1');
+  EXPECT_EQ(result("-Wno-unguarded-math").find("warning:"), std::string::npos);
+  EXPECT_EQ(result("--target vulkan1.0")[0], '0');
+  EXPECT_EQ(entries(), 5);
+  EXPECT_EQ(result(""), first);
+  write_file("lib/b.glsl", "oops\n");
+  EXPECT_NE(result("").find("lib/b.glsl:"), std::string::npos) << "the include has changed";
+  write_file("lib/b.glsl", "float b = 1.0;\n");
+  EXPECT_EQ(result(""), first);
+  write("b.glsl", "oops\n");
+  EXPECT_NE(result("").find("b.glsl:"), std::string::npos) << "a file now stands where none was";
+  std::filesystem::remove(folder / "b.glsl");
+  for (const auto &kept : std::filesystem::directory_iterator(folder / "cache")) {
+    std::filesystem::resize_file(kept, std::filesystem::file_size(kept) / 2);
+  }
+  EXPECT_EQ(result(""), first) << "damaged entries are written again";
+}
+
+TEST_F(ShaderFilesTest, LevelsAreOptions)
+{
+  write("a.frag",
+        "#version 450\nlayout(location = 0) in vec3 v;\nlayout(location = 0) out vec4 c;\n"
+        "void main() { c = vec4(acos(dot(v, v.zyx))); }\n");
+  EXPECT_EQ(check("a.frag").status, 0);
+  EXPECT_EQ(check("a.frag -Werror").status, 1);
+  EXPECT_EQ(check("a.frag -Werror=unguarded-math -Wblock-array").status, 1);
+  EXPECT_EQ(check("a.frag -Wno-unguarded-math -Werror").status, 0);
+  const Finished unknown = check("a.frag -Wunguarded");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("unguarded-math"), std::string::npos) << "the known ones are listed: " << unknown.err;
+  EXPECT_EQ(check("a.frag -Wno-compile").status, 2) << "a mistake that no level removes";
+}
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,531 @@
+// SPDX-License-Identifier: MIT
+// check_program: any GLSL of others. The texts are made from parts, so that no name, stage or version is special.
+#include "shader_check.hh"
+
+#include "gpu/gpu_testing.hh"
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace gnomon::shader_check {
+namespace {
+
+using test::ShaderTexts;
+using Texts = std::map<std::string, std::string>;
+
+/** The stage by the part behind the last dot, which is an ending of stage_names(). */
+Stage stage_named(const std::string &path)
+{
+  const std::string ending = path.substr(path.rfind('.') + 1);
+  const auto found = std::ranges::find(stage_names(), ending, &StageName::ending);
+  EXPECT_NE(found, stage_names().end()) << path;
+  return found->stage;
+}
+
+/** Checks the files of \a texts whose names end in a stage; others are there for includes. */
+ProgramCheck check_texts(const Texts &texts, const ProgramOptions &options = {},
+                         const std::vector<std::string> &defines = {})
+{
+  Program program{"test", {}, defines};
+  for (const auto &[path, text] : texts) {
+    if (!path.ends_with(".glsl")) {
+      program.files.push_back({stage_named(path), path});
+    }
+  }
+  const gpu::ShaderFiles files = [&texts](std::string_view path) -> std::optional<std::string_view> {
+    const auto found = texts.find(std::string(path));
+    return found == texts.end() ? std::nullopt : std::optional<std::string_view>(found->second);
+  };
+  return check_program(program, files, options);
+}
+
+std::string messages_of(const ProgramCheck &check)
+{
+  std::string text;
+  for (const CheckMessage &m : check.messages) {
+    text += fmt::format("{}:{}: {}: {} [{}]\n", m.file, m.line, to_string(m.severity), m.text, m.rule);
+  }
+  return text;
+}
+
+ProgramOptions for_target(CheckTarget target)
+{
+  ProgramOptions options;
+  options.target = target;
+  return options;
+}
+
+constexpr std::array vulkan_targets = {CheckTarget::Vulkan10, CheckTarget::Vulkan11, CheckTarget::Vulkan12,
+                                       CheckTarget::Vulkan13};
+
+TEST(CheckProgram, PushConstantsHaveAnyNameInAnyStage)
+{
+  for (const std::string name : {"Push", "pc", "push_constant_block", "Constants1", "U_"}) {
+    for (const std::string instance : {"", "p", "push_constants"}) {
+      const std::string block =
+          "#version 450\nlayout(push_constant) uniform " + name + " { mat4 m; vec4 v; } " + instance + ";\n";
+      const std::string v = (instance.empty() ? "" : instance + ".") + "v";
+      const Texts stages = {
+          {"a.vert", block + "void main() { gl_Position = " + v + "; }\n"},
+          {"b.frag", block + "layout(location = 0) out vec4 c;\nvoid main() { c = " + v + "; }\n"},
+          {"c.comp", block +
+                         "layout(local_size_x = 4) in;\nlayout(r32f, binding = 0) uniform image2D i;\n"
+                         "void main() { imageStore(i, ivec2(0), " +
+                         v + "); }\n"},
+          {"d.geom", block +
+                         "layout(points) in;\nlayout(points, max_vertices = 1) out;\n"
+                         "void main() { gl_Position = " +
+                         v + "; EmitVertex(); }\n"},
+          {"e.tese", block + "layout(triangles) in;\nvoid main() { gl_Position = " + v + "; }\n"}};
+      for (const auto &[path, text] : stages) {
+        for (const CheckTarget target : vulkan_targets) {
+          EXPECT_EQ(messages_of(check_texts({{path, text}}, for_target(target))), "") << text << to_string(target);
+        }
+        EXPECT_TRUE(is_vulkan(check_texts({{path, text}}).target)) << text;
+      }
+    }
+  }
+}
+
+TEST(CheckProgram, EveryStageIsCompiled)
+{
+  const std::string rays = "#version 460\n#extension GL_EXT_ray_tracing : require\n";
+  const std::string payload = rays + "layout(location = 0) rayPayloadInEXT vec4 payload;\n";
+  const std::string mesh = "#version 450\n#extension GL_EXT_mesh_shader : require\nlayout(local_size_x = 1) in;\n";
+  const std::map<Stage, std::string> texts = {
+      {Stage::Vertex, "#version 450\nvoid main() { gl_Position = vec4(0); }\n"},
+      {Stage::TessControl, "#version 450\nlayout(vertices = 3) out;\nvoid main() { gl_TessLevelOuter[0] = 1.0; }\n"},
+      {Stage::TessEvaluation, "#version 450\nlayout(triangles) in;\nvoid main() { gl_Position = vec4(0); }\n"},
+      {Stage::Geometry,
+       "#version 450\nlayout(points) in;\nlayout(points, max_vertices = 1) out;\n"
+       "void main() { EmitVertex(); }\n"},
+      {Stage::Fragment, "#version 450\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(1); }\n"},
+      {Stage::Compute, "#version 450\nlayout(local_size_x = 64) in;\nvoid main() { barrier(); }\n"},
+      {Stage::Task, mesh + "void main() { EmitMeshTasksEXT(1, 1, 1); }\n"},
+      {Stage::Mesh, mesh + "layout(triangles, max_vertices = 3, max_primitives = 1) out;\n"
+                           "void main() { SetMeshOutputsEXT(0, 0); }\n"},
+      {Stage::RayGeneration,
+       rays + "layout(location = 0) rayPayloadEXT vec4 payload;\nvoid main() { payload = vec4(0); }\n"},
+      {Stage::Intersection, rays + "hitAttributeEXT vec2 at;\nvoid main() { reportIntersectionEXT(1.0, 0u); }\n"},
+      {Stage::AnyHit, payload + "void main() { ignoreIntersectionEXT; }\n"},
+      {Stage::ClosestHit, payload + "void main() { payload = vec4(1); }\n"},
+      {Stage::Miss, payload + "void main() { payload = vec4(0); }\n"},
+      {Stage::Callable, rays + "layout(location = 0) callableDataInEXT vec4 d;\nvoid main() { d = vec4(0); }\n"}};
+  ASSERT_EQ(texts.size(), stage_names().size());
+  for (const StageName &stage : stage_names()) {
+    std::string text = texts.at(stage.stage);
+    const std::string path = fmt::format("any.{}", stage.ending);
+    const ProgramCheck check = check_texts({{path, text}}, for_target(CheckTarget::Vulkan12));
+    EXPECT_EQ(messages_of(check), "") << text;
+    ASSERT_EQ(check.spirv.size(), 1U);
+    EXPECT_EQ(check.spirv[0].first, stage.stage);
+    EXPECT_EQ(check.spirv[0].second.at(0), 0x07230203U) << "the first word of SPIR-V";
+    EXPECT_TRUE(is_vulkan(check_texts({{path, text}}).target) || stage.stage == Stage::Vertex) << text;
+    text.replace(text.rfind('}'), 1, "oops; }");
+    const ProgramCheck broken = check_texts({{path, text}}, for_target(CheckTarget::Vulkan12));
+    const int line = int(std::ranges::count(text.substr(0, text.find("oops")), '\n')) + 1;
+    ASSERT_FALSE(broken.messages.empty()) << text;
+    EXPECT_EQ(messages_of(broken).find(fmt::format("{}:{}: error: 'oops' : undeclared identifier", path, line)), 0U)
+        << messages_of(broken);
+    EXPECT_TRUE(broken.spirv.empty());
+  }
+}
+
+TEST(CheckProgram, StagesBetweenVertexAndFragmentPassVaryingsOn)
+{
+  const auto program = [](int location, const std::string &type) {
+    const std::string at = fmt::format("layout(location = {}) ", location);
+    return Texts{
+        {"p.vert", "#version 450\n" + at + "out " + type + " from_vertex;\nvoid main() { from_vertex = " + type +
+                       "(1); gl_Position = vec4(0); }\n"},
+        {"p.tesc", "#version 450\nlayout(vertices = 3) out;\n" + at + "in " + type + " read[];\n" + at + "out " + type +
+                       " kept[];\nvoid main() { kept[gl_InvocationID] = read[gl_InvocationID]; "
+                       "gl_TessLevelOuter[0] = 1.0; }\n"},
+        {"p.tese", "#version 450\nlayout(triangles) in;\n" + at + "in " + type + " kept[];\n" +
+                       fmt::format("layout(location = {}) out {} normal;\n", location + 1, type) +
+                       "void main() { normal = kept[0]; gl_Position = vec4(0); }\n"},
+        {"p.frag", fmt::format("#version 450\nlayout(location = {}) in {} normal;\nlayout(location = 0) out vec4 c;\n",
+                               location + 1, type) +
+                       "void main() { c = vec4(1) * normal[0]; }\n"}};
+  };
+  for (const int location : {0, 3, 7}) {
+    for (const std::string type : {"vec2", "vec3", "vec4"}) {
+      const Texts all = program(location, type);
+      EXPECT_EQ(messages_of(check_texts(all, for_target(CheckTarget::Vulkan12))), "") << location << type;
+      Texts without = all;
+      without.erase("p.tesc");
+      without.erase("p.tese");
+      EXPECT_NE(messages_of(check_texts(without, for_target(CheckTarget::Vulkan12))).find("[missing-varying]"),
+                std::string::npos);
+    }
+  }
+}
+
+TEST(CheckProgram, BlocksOfOneNameMayDifferInVulkan)
+{
+  const auto program = [](const std::string &vertex, const std::string &fragment) {
+    return Texts{{"p.vert", "#version 450\n" + vertex + "\nvoid main() { gl_Position = vec4(b.v[0]); }\n"},
+                 {"p.frag", "#version 450\nlayout(location = 0) out vec4 c;\n" + fragment +
+                                "\nvoid main() { c = vec4(b.v[0]); }\n"}};
+  };
+  const std::string one = "layout(binding = 0) uniform Any { vec4 v; } b;";
+  for (const std::string &other : {std::string("layout(binding = 1) uniform Any { vec4 v; } b;"),
+                                   std::string("layout(binding = 0) uniform Any { vec2 v; } b;"),
+                                   std::string("layout(binding = 0) uniform Any { vec4 v; vec4 w; } b;")}) {
+    for (const CheckTarget target : vulkan_targets) {
+      const ProgramCheck check = check_texts(program(one, other), for_target(target));
+      EXPECT_FALSE(check.has_errors()) << messages_of(check);
+      EXPECT_NE(messages_of(check).find("warning: "), std::string::npos) << other;
+      EXPECT_NE(messages_of(check).find("[block-match]"), std::string::npos) << messages_of(check);
+      EXPECT_EQ(check.spirv.size(), 2U);
+    }
+    EXPECT_TRUE(check_texts(program(one, other), for_target(CheckTarget::OpenGl)).has_errors()) << other;
+  }
+  const Texts constants = program("layout(push_constant) uniform P { vec4 v; } b;",
+                                  "layout(push_constant) uniform P { layout(offset = 16) vec2 v; } b;");
+  EXPECT_EQ(messages_of(check_texts(constants, for_target(CheckTarget::Vulkan12))), "");
+}
+
+struct Dialect {
+  std::string version;
+  CheckTarget target;
+  bool has_out = true;
+};
+
+std::vector<Dialect> dialects()
+{
+  std::vector<Dialect> all;
+  for (const int version : {110, 120, 130, 140, 150, 330, 400, 410, 420, 430, 440, 450, 460}) {
+    all.push_back({fmt::format("#version {}\n", version), CheckTarget::OpenGl, version >= 130});
+    if (version >= 150) {
+      all.push_back({fmt::format("#version {} core\n", version), CheckTarget::OpenGl, true});
+      all.push_back({fmt::format("  #  version {}   compatibility\n", version), CheckTarget::OpenGl, true});
+    }
+  }
+  all.push_back({"", CheckTarget::OpenGl, false});
+  all.push_back({"#version 100\n", CheckTarget::Es, false});
+  for (const int version : {300, 310, 320}) {
+    all.push_back({fmt::format("#version {} es\n", version), CheckTarget::Es, true});
+  }
+  return all;
+}
+
+/** A fragment shader whose color is \a value. Its declarations name no location or binding. */
+std::string fragment_of(const Dialect &dialect, const std::string &value)
+{
+  const std::string precision = dialect.target == CheckTarget::Es ? "precision mediump float;\n" : "";
+  return dialect.version + precision + (dialect.has_out ? "in vec2 uv;\nout vec4 result;\n" : "varying vec2 uv;\n") +
+         "uniform sampler2D picture;\n" + "void main() { " + (dialect.has_out ? "result" : "gl_FragColor") + " =\n" +
+         value + "\n; }\n";
+}
+
+TEST(CheckProgram, EveryVersionOfOpenGlAndEsIsCompiledAndRecognised)
+{
+  for (const Dialect &dialect : dialects()) {
+    const std::string read = dialect.has_out ? "texture(picture, uv)" : "texture2D(picture, uv)";
+    const Texts texts{{"x.frag", fragment_of(dialect, read)}};
+    EXPECT_EQ(messages_of(check_texts(texts, for_target(dialect.target))), "") << texts.at("x.frag");
+    const ProgramCheck found = check_texts(texts);
+    EXPECT_EQ(found.target, dialect.target) << texts.at("x.frag") << found.target_reason;
+    EXPECT_EQ(messages_of(found), "") << texts.at("x.frag");
+    EXPECT_FALSE(found.target_reason.empty());
+    EXPECT_TRUE(check_texts(texts, for_target(dialect.target)).target_reason.empty());
+  }
+}
+
+TEST(CheckProgram, LineDirectivesMoveLinesAndFiles)
+{
+  for (const Dialect &dialect : dialects()) {
+    // Before GLSL 3.30, `#line N` names the line itself; later, and in ES, the next one.
+    const bool names_itself = std::set<std::string>{"",
+                                                    "#version 110\n",
+                                                    "#version 120\n",
+                                                    "#version 130\n",
+                                                    "#version 140\n",
+                                                    "#version 150\n",
+                                                    "#version 150 core\n",
+                                                    "  #  version 150   compatibility\n"}
+                                  .contains(dialect.version);
+    for (const auto &[directive, file] : {std::pair("#line 70", "x.frag"), std::pair("# line 70 3", "x.frag")}) {
+      const ProgramCheck check = check_texts({{"x.frag", fragment_of(dialect, fmt::format("{}\noops", directive))}},
+                                             for_target(dialect.target));
+      EXPECT_EQ(messages_of(check).find(fmt::format("{}:{}: error: 'oops'", file, names_itself ? 71 : 70)), 0U)
+          << dialect.version << messages_of(check);
+    }
+  }
+  for (const std::string name : {"gen/material.glsl", "a b.nut", "C:/x.hlsl", "12"}) {
+    const std::string text =
+        "#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
+        "layout(location = 0) out vec4 c;\nvoid main() {\n#line 101 \"" +
+        name + "\"\n  c = vec4(oops);\n}\n";
+    const ProgramCheck check = check_texts({{"x.frag", text}}, for_target(CheckTarget::Vulkan12));
+    EXPECT_EQ(messages_of(check).find((name == "12" ? "x.frag" : name) + ":101: error: 'oops'"), 0U)
+        << messages_of(check);
+  }
+}
+
+/** A fragment shader that includes by \a lines and returns \a value. */
+std::string including(const std::string &lines, const std::string &value)
+{
+  return "#version 450\n#extension GL_GOOGLE_include_directive : require\n" + lines +
+         "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(" + value + "); }\n";
+}
+
+TEST(CheckProgram, IncludesAreThoseOfTheCompiler)
+{
+  ProgramOptions options = for_target(CheckTarget::Vulkan12);
+  options.include_folders = {"lib", "other"};
+  const Texts files = {{"s/near.glsl", "float near_value() { return 1.0; }\n"},
+                       {"lib/far.glsl", "#include \"deep.glsl\"\nfloat far_value() { return deep; }\n"},
+                       {"lib/deep.glsl", "const float deep = 2.0;\n"},
+                       {"other/NAME.glsl", "float NAME() { return 3.0; }\n"},
+                       {"lib/bad.glsl", "\n\nfloat bad() { return oops; }\n"}};
+  const auto check = [&](const std::string &lines, const std::string &value) {
+    Texts texts = files;
+    texts["s/x.frag"] = including(lines, value);
+    return check_texts(texts, options);
+  };
+  const std::pair<std::string, std::string> right[] = {
+      {"#include \"near.glsl\"\n", "near_value()"},
+      {"#include <far.glsl>\n", "far_value()"},
+      {"  #  include \"far.glsl\" // a comment\n", "far_value()"},
+      {"/* #include \"none.glsl\" */\n", "1.0"},
+      {"/*\n#include \"none.glsl\"\n*/\n", "1.0"},
+      {"// #include \"none.glsl\"\n", "1.0"},
+      {"#if 0\n#include \"none.glsl\"\n#endif\n", "1.0"},
+      {"#ifdef NOPE\n#include <none.glsl>\n#else\n#include \"near.glsl\"\n#endif\n", "near_value()"},
+      {"#define NAME one\n#include \"NAME.glsl\"\n#undef NAME\n#define NAME two\n#include <NAME.glsl>\n",
+       "one() + two()"}};
+  for (const auto &[lines, value] : right) {
+    EXPECT_EQ(messages_of(check(lines, value)), "") << lines;
+  }
+  EXPECT_EQ(messages_of(check("#include <near.glsl>\n", "1.0"))
+                .find("s/x.frag:3: error: no shader file 'near.glsl' in the folders of -I [include]"),
+            0U);
+  EXPECT_EQ(messages_of(check("\n#include \"none.glsl\"\n", "1.0"))
+                .find("s/x.frag:4: error: no shader file 's/none.glsl' [include]"),
+            0U)
+      << messages_of(check("\n#include \"none.glsl\"\n", "1.0"));
+  EXPECT_EQ(messages_of(check("#include <bad.glsl>\n", "bad()")).find("lib/bad.glsl:3: error: 'oops'"), 0U);
+  const ProgramCheck read = check("#include \"far.glsl\"\n", "far_value()");
+  EXPECT_EQ(read.files, (std::vector<std::string>{"s/x.frag", "lib/far.glsl", "lib/deep.glsl"}));
+  EXPECT_EQ(read.absent, (std::vector<std::string>{"s/far.glsl"})) << "a file here would change the result";
+}
+
+TEST(CheckProgram, AnIncludeWithoutAnEndIsAMessage)
+{
+  Texts texts{{"x.frag", including("#include \"a.glsl\"\n", "1.0")}, {"a.glsl", "#include \"a.glsl\"\n"}};
+  EXPECT_NE(messages_of(check_texts(texts)).find("[include]"), std::string::npos) << messages_of(check_texts(texts));
+  texts["a.glsl"] = "#ifndef A\n#define A\n#include \"a.glsl\"\nfloat a = 1.0;\n#endif\n";
+  texts["x.frag"] = including("#include \"a.glsl\"\n#include \"a.glsl\"\n", "a");
+  EXPECT_EQ(messages_of(check_texts(texts)), "") << "a guard ends it";
+}
+
+TEST(CheckProgram, AByteOrderMarkIsNamed)
+{
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string text = including("#include \"a.glsl\"\n", "a");
+  const Texts in_stage{{"x.frag", mark + text}, {"a.glsl", "float a = 1.0;\n"}};
+  EXPECT_EQ(messages_of(check_texts(in_stage)).find("x.frag:1: error: the file begins with a byte-order mark"), 0U)
+      << messages_of(check_texts(in_stage));
+  EXPECT_TRUE(is_vulkan(check_texts(in_stage).target));
+  const Texts in_include{{"x.frag", text}, {"a.glsl", mark + "float a = 1.0;\n"}};
+  EXPECT_EQ(messages_of(check_texts(in_include)).find("a.glsl:1: error: the file begins with a byte-order mark"), 0U);
+}
+
+TEST(CheckProgram, RulesOfGnomonsOwnBlocksAreOff)
+{
+  const std::string out = "#version 450\nlayout(location = 0) out vec4 c;\nlayout(location = 0) in vec2 u;\n";
+  const std::string texts[] = {
+      "layout(std430, binding = 1) readonly buffer B { vec3 p[]; };\nvoid main() { c = vec4(p[0], u.x); }\n",
+      "layout(std140, binding = 1) uniform B { float p[4]; mat3 m[2]; };\nvoid main() { c = vec4(m[1][2], p[2] + u.x); "
+      "}\n",
+      "layout(binding = 1) uniform sampler2D a;\nlayout(binding = 1) uniform texture2D b;\n"
+      "layout(binding = 2) uniform sampler s;\nvoid main() { c = texture(a, u) + texture(sampler2D(b, s), u); }\n"};
+  for (const std::string &text : texts) {
+    EXPECT_EQ(messages_of(check_texts({{"x.frag", out + text}})), "");
+  }
+  ProgramOptions options;
+  options.levels = {{"block-array", RuleLevel::Warning}, {"slot", RuleLevel::Error}};
+  EXPECT_NE(messages_of(check_texts({{"x.frag", out + texts[0]}}, options)).find("x.frag:4: warning: 'p'"),
+            std::string::npos);
+  EXPECT_NE(messages_of(check_texts({{"x.frag", out + texts[2]}}, options)).find("x.frag:5: error: "),
+            std::string::npos)
+      << messages_of(check_texts({{"x.frag", out + texts[2]}}, options));
+}
+
+TEST(CheckProgram, OpenGlCountsImagesAndTexturesApart)
+{
+  const std::string text =
+      "#version 450\nlayout(location = 0) in vec2 u;\nlayout(location = 0) out vec4 c;\n"
+      "layout(r32f, binding = 0) uniform image2D i;\nlayout(binding = 0) uniform sampler2D s;\n"
+      "void main() { c = texture(s, u); imageStore(i, ivec2(0), c); }\n";
+  for (const CheckTarget target : {CheckTarget::OpenGl, CheckTarget::OpenGlSpirv}) {
+    ProgramOptions options = for_target(target);
+    options.levels["slot"] = RuleLevel::Error;
+    EXPECT_EQ(messages_of(check_texts({{"x.frag", text}}, options)), "");
+  }
+  ProgramOptions options = for_target(CheckTarget::Vulkan12);
+  options.levels["slot"] = RuleLevel::Error;
+  EXPECT_NE(messages_of(check_texts({{"x.frag", text}}, options)).find("[slot]"), std::string::npos);
+}
+
+TEST(CheckProgram, SubgroupsAreForOpenGlToo)
+{
+  for (const std::string extension : {"arithmetic", "ballot", "shuffle"}) {
+    const std::string use = extension == "arithmetic" ? "subgroupAdd(x)"
+                            : extension == "ballot"   ? "subgroupBroadcastFirst(x)"
+                                                      : "subgroupShuffle(x, 0u)";
+    const std::string text = "#version 450\n#extension GL_KHR_shader_subgroup_" + extension +
+                             " : require\nlayout(location = 0) in float x;\nlayout(location = 0) out vec4 c;\n"
+                             "void main() { c = vec4(" +
+                             use + "); }\n";
+    for (const CheckTarget target : {CheckTarget::OpenGl, CheckTarget::Vulkan11, CheckTarget::Vulkan12}) {
+      EXPECT_EQ(messages_of(check_texts({{"x.frag", text}}, for_target(target))), "") << text << to_string(target);
+    }
+  }
+}
+
+TEST(CheckProgram, LevelsAreSetForACallAFileAndALine)
+{
+  const auto text = [](const std::string &comment, const std::string &at_line) {
+    return comment +
+           "#version 450\nlayout(location = 0) in vec3 a;\nlayout(location = 0) out vec4 c;\n"
+           "void main() { c = vec4(acos(dot(a, a.zyx))); }" +
+           at_line + "\n";
+  };
+  const auto severity = [&](const std::string &source, const ProgramOptions &options) {
+    const ProgramCheck check = check_texts({{"x.frag", source}}, options);
+    return check.messages.empty() ? std::string("off") : std::string(to_string(check.messages[0].severity));
+  };
+  EXPECT_EQ(severity(text("", ""), {}), "warning");
+  for (const auto &[level, name] : {std::pair(RuleLevel::Off, "off"), std::pair(RuleLevel::Warning, "warning"),
+                                    std::pair(RuleLevel::Error, "error")}) {
+    ProgramOptions options;
+    options.levels["unguarded-math"] = level;
+    EXPECT_EQ(severity(text("", ""), options), name);
+    const std::string comment = std::string("// shader-check: unguarded-math=") + name + "\n";
+    EXPECT_EQ(severity(text(comment, ""), {}), name);
+    options.levels["unguarded-math"] = RuleLevel::Error;
+    EXPECT_EQ(severity(text(comment, ""), options), name) << "the comment precedes";
+  }
+  ProgramOptions strict;
+  strict.is_strict = true;
+  EXPECT_EQ(severity(text("", ""), strict), "error");
+  EXPECT_EQ(severity(text("", " // shader-check: unguarded-math, a is short"), {}), "off");
+  EXPECT_EQ(severity(text("", " // shader-check: unguarded-loop"), {}), "warning");
+}
+
+TEST(CheckProgram, AFeatureOfDevicesIsAWarningUntilItIsAssumed)
+{
+  const std::string text =
+      "#version 450\n#extension GL_EXT_scalar_block_layout : require\n"
+      "layout(scalar, binding = 0) uniform B { vec3 u; vec3 v; };\n"
+      "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(u + v, 1); }\n";
+  ProgramOptions options = for_target(CheckTarget::Vulkan12);
+  const ProgramCheck check = check_texts({{"x.frag", text}}, options);
+  ASSERT_EQ(check.messages.size(), 1U) << messages_of(check);
+  EXPECT_EQ(check.messages[0].severity, Severity::Warning);
+  EXPECT_NE(check.messages[0].text.find("--feature scalarBlockLayout"), std::string::npos) << check.messages[0].text;
+  options.features = {"scalarBlockLayout"};
+  EXPECT_EQ(messages_of(check_texts({{"x.frag", text}}, options)), "");
+}
+
+/** CPU time of this process. */
+double cpu_seconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+TEST(CheckProgram, TimeIsLinearInTheLength)
+{
+  const auto seconds = [](int function_count) {
+    std::string text = "#version 450\nlayout(location = 0) in vec2 uv;\nlayout(location = 0) out vec4 c;\n";
+    std::string body;
+    for (int i = 0; i < function_count; i++) {
+      text += fmt::format("float g{0}(float x) {{ return sin(x) + {0}.0; }}\n", i);
+      body += fmt::format("  s += g{}(uv.x);\n", i);
+    }
+    text += "void main() {\n  float s = 0.0;\n" + body + "  c = vec4(s);\n}\n";
+    const double start = cpu_seconds();
+    EXPECT_EQ(messages_of(check_texts({{"x.frag", text}})), "");
+    return cpu_seconds() - start;
+  };
+  const double first = seconds(500);
+  // Four times the length takes four times as long, or 16 times if a step is quadratic.
+  EXPECT_LT(seconds(2000), 8.0 * first);
+}
+
+TEST(CheckProgram, TimeIsLinearInTheNumberOfIncludedFiles)
+{
+  // Each file includes the next one twice: 2^40 paths, of which conditions take none or guards take one.
+  for (const bool is_guarded : {false, true}) {
+    Texts texts{{"x.frag", including("#include \"x0.glsl\"\n", "1.0")}};
+    for (int i = 0; i < 40; i++) {
+      const std::string next = fmt::format("#include \"x{}.glsl\"\n", i + 1);
+      texts[fmt::format("x{}.glsl", i)] =
+          is_guarded ? fmt::format("#ifndef Q{0}\n#define Q{0}\n{1}{1}#endif\n", i, next)
+                     : fmt::format("#ifdef Q{0}\n{1}#endif\n#ifdef R{0}\n{1}#endif\n", i, next);
+    }
+    texts["x40.glsl"] = "";
+    const double start = cpu_seconds();
+    EXPECT_EQ(messages_of(check_texts(texts)), "");
+    EXPECT_LT(cpu_seconds() - start, 5.0);
+  }
+}
+
+/** The pages of rules, each with the examples in its text. */
+TEST(CheckRules, EachHasAPageWhoseExampleShowsIt)
+{
+  std::ifstream file(GNOMON_SOURCE "/doc/shader-rules.md");
+  std::ostringstream content;
+  content << file.rdbuf();
+  const std::string page = content.str();
+  for (const CheckRule &rule : check_rules()) {
+    const std::string heading = fmt::format("\n## {}\n", rule.name);
+    const std::size_t at = page.find(heading);
+    ASSERT_NE(at, std::string::npos) << rule.name << " has no page";
+    const std::string section = page.substr(at, page.find("\n## ", at + 1) - at);
+    Texts texts;
+    std::set<std::string> marked;
+    for (std::size_t from = section.find("```glsl "); from != std::string::npos;
+         from = section.find("```glsl ", from)) {
+      const std::size_t name_end = section.find('\n', from);
+      const std::size_t end = section.find("```", name_end);
+      const std::string name = section.substr(from + 8, name_end - from - 8);
+      texts[name] = section.substr(name_end + 1, end - name_end - 1);
+      std::istringstream lines(texts[name]);
+      int number = 1;
+      for (std::string line; std::getline(lines, line); number++) {
+        if (line.ends_with(fmt::format("// {}", rule.name))) {
+          marked.insert(fmt::format("{}:{}: ", name, number));
+        }
+      }
+      from = end;
+    }
+    // The rules `stage` and `limit` are the program's, `layout` compares C++ structs.
+    EXPECT_EQ(texts.empty(), rule.name == "stage" || rule.name == "limit" || rule.name == "layout") << rule.name;
+    if (texts.empty()) {
+      continue;
+    }
+    ProgramOptions options;
+    if (rule.is_own) {
+      options.levels[std::string(rule.name)] = RuleLevel::Error;
+    }
+    const std::string messages = messages_of(check_texts(texts, options));
+    EXPECT_NE(messages.find(fmt::format("[{}]\n", rule.name)), std::string::npos) << rule.name << ":\n" << messages;
+    EXPECT_TRUE(marked.empty() ||
+                std::ranges::any_of(
+                    marked, [&](const std::string &place) { return messages.find(place) != std::string::npos; }))
+        << rule.name << ":\n"
+        << messages;
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::shader_check
