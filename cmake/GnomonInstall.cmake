@@ -21,10 +21,10 @@ install(EXPORT gnomon NAMESPACE gnomon:: FILE gnomon-targets.cmake DESTINATION $
 
 # The name in lower case serves find_package(gnomon) and find_package(Gnomon).
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gnomon-config.cmake.in ${PROJECT_BINARY_DIR}/gnomon-config.cmake
-  INSTALL_DESTINATION ${PACKAGE_FOLDER})
+  INSTALL_DESTINATION ${PACKAGE_FOLDER} PATH_VARS CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/gnomon-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gnomon-config.cmake ${PROJECT_BINARY_DIR}/gnomon-config-version.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/GnomonLibraryDependencies.cmake DESTINATION ${PACKAGE_FOLDER})
+  ${CMAKE_CURRENT_LIST_DIR}/GnomonLibraryDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/GnomonShaders.cmake DESTINATION ${PACKAGE_FOLDER})
 
 # A static library is of no use without what it is linked with. A shared one knows it.
 set(PC_REQUIRES "epoxy egl libxxhash glfw3 spng libturbojpeg libwebp simdjson draco")

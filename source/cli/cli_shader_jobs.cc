@@ -2,7 +2,7 @@
 #include "cli_shader_jobs.hh"
 
 #include "cli.hh"
-#include "cli_origin.hh"
+#include "cli_shader_checker.hh"
 
 #include "output_file.hh"
 
@@ -76,11 +76,7 @@ std::string hash_of(std::string_view text)
 /** Results by what they depend on. */
 class Cache {
  public:
-  explicit Cache(fs::path folder) : folder_(std::move(folder))
-  {
-    const Origin program = origin();
-    version_ = program.program + program.commit;
-  }
+  Cache(fs::path folder, const gpu::ShaderFiles &files) : folder_(std::move(folder)), files_(files) {}
 
   std::optional<ProgramCheck> find(const ShaderJob &job)
   {
@@ -125,7 +121,8 @@ class Cache {
  private:
   fs::path path_of(const ShaderJob &job) const
   {
-    return folder_ / hash_of(version_ + job.key);
+    // Another checker may find other mistakes.
+    return folder_ / hash_of(GNOMON_SHADER_CHECKER + job.key);
   }
   static std::optional<std::string> read(const fs::path &path)
   {
@@ -143,15 +140,14 @@ class Cache {
   {
     const auto [entry, is_new] = contents_.try_emplace(path);
     if (is_new) {
-      const std::optional<std::string> text = read(path);
+      const std::optional<std::string_view> text = files_(path);
       entry->second = text ? hash_of(*text) : "";
     }
     return entry->second;
   }
 
   fs::path folder_;
-  /** Other versions may find other mistakes. */
-  std::string version_;
+  const gpu::ShaderFiles &files_;
   std::map<std::string, std::string> contents_;
 };
 
@@ -171,11 +167,11 @@ std::vector<ProgramCheck> run_jobs(const std::vector<ShaderJob> &jobs, const Job
   std::vector<ProgramCheck> results(jobs.size());
   std::optional<Cache> cache;
   if (!options.cache.empty()) {
-    cache.emplace(options.cache);
+    cache.emplace(options.cache, options.files);
   }
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < jobs.size(); i++) {
-    std::optional<ProgramCheck> known = cache && !jobs[i].key.empty() ? cache->find(jobs[i]) : std::nullopt;
+    std::optional<ProgramCheck> known = cache ? cache->find(jobs[i]) : std::nullopt;
     if (known) {
       results[i] = std::move(*known);
     }
@@ -202,7 +198,7 @@ std::vector<ProgramCheck> run_jobs(const std::vector<ShaderJob> &jobs, const Job
       continue;
     }
     result = from_bytes(answers[i].bytes);
-    if (cache && !job.key.empty()) {
+    if (cache) {
       cache->keep(job, result);
     }
   }

@@ -15,7 +15,7 @@ struct ShaderJob {
   std::string program;
   std::string file;
   shader_check::CheckTarget target = shader_check::CheckTarget::OpenGlSpirv;
-  /** All that the result depends on but the files that it names: options. Empty: the result is not kept. */
+  /** All that the result depends on but the files that it names: options. */
   std::string key;
 };
 
@@ -23,6 +23,8 @@ struct JobOptions {
   WorkLimits limits;
   /** Folder of results by the content of files; empty: none is kept. */
   std::filesystem::path cache;
+  /** The files that the results name. */
+  gpu::ShaderFiles files;
 };
 
 /** Runs \a jobs on all cores. \return the results in the order of jobs; a job that breaks a limit has an error. */

@@ -2,6 +2,7 @@
 #include "cli_shaders.hh"
 
 #include "cli_shader_jobs.hh"
+#include "cli_shader_manifest.hh"
 #include "cli_shader_programs.hh"
 
 #include "eevee_programs.hh"
@@ -10,7 +11,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iostream>
 #include <iterator>
+#include <set>
 
 namespace gnomon::cli {
 
@@ -29,7 +32,10 @@ struct CheckArguments {
   std::string format = "text";
   std::string shaders;
   std::string program;
+  std::string manifest;
   std::string cache;
+  /** A path: its text comes from standard input. */
+  std::string input;
   std::string output;
   std::string depfile;
   std::string depfile_target;
@@ -73,13 +79,14 @@ void read_levels(const std::vector<std::string> &arguments, shader_check::RuleLe
 }
 
 /** Runs \a jobs and puts their messages together. */
-ShaderReport report_of(const std::vector<ShaderJob> &jobs, const CheckArguments &arguments,
-                       std::vector<shader_check::ProgramCheck> *checks = nullptr)
+ShaderReport report_of(const std::vector<ShaderJob> &jobs, const gpu::ShaderFiles &files,
+                       const CheckArguments &arguments, std::vector<shader_check::ProgramCheck> *checks = nullptr)
 {
   const auto start = std::chrono::steady_clock::now();
   JobOptions options;
   options.limits.seconds = arguments.time_limit;
   options.cache = arguments.cache;
+  options.files = files;
   std::vector<shader_check::ProgramCheck> results = run_jobs(jobs, options);
   ShaderReport report;
   for (std::size_t i = 0; i < jobs.size(); i++) {
@@ -98,6 +105,25 @@ ShaderReport report_of(const std::vector<ShaderJob> &jobs, const CheckArguments 
   return report;
 }
 
+/** \a words in an unambiguous form, as a part of a key. */
+std::string text_of(const std::vector<std::string> &words)
+{
+  std::string text = fmt::format("list {}\n", words.size());
+  for (const std::string &word : words) {
+    text += word + "\n";
+  }
+  return text;
+}
+
+std::string text_of(const shader_check::RuleLevels &levels)
+{
+  std::string text;
+  for (const auto &[rule, level] : levels) {
+    text += fmt::format("{}={}\n", rule, int(level));
+  }
+  return text;
+}
+
 /** Checks all of \a descs of Gnomon for all of \a targets. */
 ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::ShaderFiles &files,
                        const CheckArguments &arguments)
@@ -106,6 +132,13 @@ ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::Sha
   options.blocks = engine_blocks();
   options.is_block_size_strict = true;
   read_levels(arguments.levels, options.levels, options.is_strict);
+  std::string blocks;
+  for (const gpu::BlockLayout &block : options.blocks) {
+    blocks += fmt::format("{} {}\n", block.name, block.size_bytes);
+    for (const gpu::BlockLayout::Field &field : block.fields) {
+      blocks += fmt::format(" {} {}\n", field.name, field.offset_bytes);
+    }
+  }
   std::vector<ShaderJob> jobs;
   for (const gpu::ShaderDesc &desc : descs) {
     for (const shader_check::CheckTarget target : targets_of(arguments.target)) {
@@ -113,14 +146,27 @@ ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::Sha
         shader_check::CheckOptions job = options;
         job.target = target;
         shader_check::ProgramCheck result;
-        result.messages = shader_check::check_shader(desc, files, job);
+        const gpu::ShaderFiles noted = [&](std::string_view path) {
+          const std::optional<std::string_view> text = files(path);
+          (text ? result.files : result.absent).emplace_back(path);
+          return text;
+        };
+        result.messages = shader_check::check_shader(desc, noted, job);
+        for (std::vector<std::string> *paths : {&result.files, &result.absent}) {
+          std::ranges::sort(*paths);
+          const auto rest = std::ranges::unique(*paths);
+          paths->erase(rest.begin(), rest.end());
+        }
         result.target = target;
         return result;
       };
-      jobs.push_back({check, desc.name, desc.vertex_path, target, ""});
+      jobs.push_back({check, desc.name, desc.vertex_path, target,
+                      fmt::format("{} {}\n{}\n{}\n{}\n{}\n{}\n{}", int(target), options.is_strict, blocks, desc.name,
+                                  desc.vertex_path, desc.geometry_path, desc.fragment_path,
+                                  text_of(desc.defines) + text_of(options.levels))});
     }
   }
-  ShaderReport report = report_of(jobs, arguments);
+  ShaderReport report = report_of(jobs, files, arguments);
   report.variant_count = descs.size();
   return report;
 }
@@ -170,15 +216,13 @@ ShaderReport check_engine(const CheckArguments &arguments)
   return report;
 }
 
-/** Converts the `NAME=VALUE` or `NAME` of -D to a define. */
 std::string define_of(const std::string &argument)
 {
-  const std::size_t equals = argument.find('=');
-  const std::string name = argument.substr(0, equals);
-  if (name.empty()) {
+  std::string define = shader_define(argument);
+  if (define.empty()) {
     throw UsageError(fmt::format("-D '{}' is not NAME or NAME=VALUE", argument));
   }
-  return name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
+  return define;
 }
 
 /** A surface function in the programs that draw with it. */
@@ -222,8 +266,7 @@ bool are_linked(shader_check::Stage a, shader_check::Stage b)
 }
 
 /** Adds \a file to the program of its name, or to a new one. */
-void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage stage, const std::string &file,
-              const std::vector<std::string> &defines)
+void add_file(std::vector<ShaderManifest::Entry> &entries, shader_check::Stage stage, const std::string &file)
 {
   const std::string name = stem_of(file);
   const auto takes = [&](const shader_check::Program &program) {
@@ -231,12 +274,12 @@ void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage 
              return other.stage != stage && are_linked(other.stage, stage);
            });
   };
-  auto program = std::ranges::find_if(programs, takes);
-  if (program == programs.end()) {
-    programs.push_back({name, {}, defines});
-    program = programs.end() - 1;
+  auto entry = std::ranges::find_if(entries, takes, &ShaderManifest::Entry::program);
+  if (entry == entries.end()) {
+    entries.push_back({{name, {}, {}}, {}});
+    entry = entries.end() - 1;
   }
-  program->files.push_back({stage, file});
+  entry->program.files.push_back({stage, file});
 }
 
 /**
@@ -307,11 +350,12 @@ fs::path output_path(const CheckArguments &arguments, const std::string &file)
 }
 
 /** \throws output::Conflict where an output would replace what is read, or another output */
-void require_outputs(const std::vector<shader_check::Program> &programs, const CheckArguments &arguments)
+void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
 {
   output::Roles roles;
-  for (const shader_check::Program &program : programs) {
-    for (const shader_check::Program::File &file : program.files) {
+  roles.add_input(arguments.manifest, "--manifest");
+  for (const ShaderManifest::Entry &entry : entries) {
+    for (const shader_check::Program::File &file : entry.program.files) {
       roles.add_input(file.path, "a shader");
     }
   }
@@ -319,8 +363,8 @@ void require_outputs(const std::vector<shader_check::Program> &programs, const C
     if (is_output_folder(arguments)) {
       fs::create_directories(arguments.output);
     }
-    for (const shader_check::Program &program : programs) {
-      for (const shader_check::Program::File &file : program.files) {
+    for (const ShaderManifest::Entry &entry : entries) {
+      for (const shader_check::Program::File &file : entry.program.files) {
         roles.add_output(output_path(arguments, file.path), "the SPIR-V of " + file.path);
       }
     }
@@ -329,62 +373,94 @@ void require_outputs(const std::vector<shader_check::Program> &programs, const C
 }
 
 /** Writes the SPIR-V of \a checks: of one file to the path of -o, of more into that folder. */
-void write_output(const std::vector<shader_check::Program> &programs,
+void write_output(const std::vector<ShaderManifest::Entry> &entries,
                   const std::vector<shader_check::ProgramCheck> &checks, const CheckArguments &arguments)
 {
   for (std::size_t i = 0; i < checks.size(); i++) {
     for (const auto &[stage, words] : checks[i].spirv) {
-      const auto file = std::ranges::find(programs[i].files, stage, &shader_check::Program::File::stage);
+      const auto file = std::ranges::find(entries[i].program.files, stage, &shader_check::Program::File::stage);
       output::write_file(output_path(arguments, file->path),
                          {reinterpret_cast<const char *>(words.data()), words.size() * sizeof(std::uint32_t)});
     }
   }
 }
 
-/** Files whose names differ only in the stage belong to one program. */
-ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
+/**
+ * The programs of FILES: files whose names differ only in the stage belong to one. \a others gets what is said about
+ * files that are no stages.
+ */
+ShaderManifest programs_of_files(const CheckArguments &arguments, ShaderReport &others)
 {
-  ShaderReport others;
-  std::size_t function_count = 0;
-  std::vector<shader_check::Program> programs;
-  std::vector<std::string> defines;
-  std::ranges::transform(arguments.defines, std::back_inserter(defines), define_of);
+  ShaderManifest project;
   for (const std::string &file : arguments.files) {
     if (arguments.stage == "surface" || (arguments.stage.empty() && is_surface_function(file))) {
       const ShaderReport report = check_surface_function(file, arguments);
       std::ranges::copy(report.messages, std::back_inserter(others.messages));
+      others.program_count++;
       others.variant_count += report.variant_count;
       others.seconds += report.seconds;
       others.targets = report.targets;
-      function_count++;
       continue;
     }
     const std::optional<shader_check::Stage> stage =
         stage_of(arguments.stage.empty() ? fs::path(file) : fs::path("." + arguments.stage));
     if (stage) {
-      add_file(programs, *stage, file, defines);
+      add_file(project.entries, *stage, file);
     }
     else {
       others.messages.push_back({shader_check::Severity::Error, file, 1, unknown_stage(file), "stage", file, ""});
     }
   }
-  is_any_checked = !programs.empty() || function_count > 0;
-  std::ranges::for_each(programs, add_stages_between);
-  require_outputs(programs, arguments);
+  for (ShaderManifest::Entry &entry : project.entries) {
+    add_stages_between(entry.program);
+  }
+  return project;
+}
+
+/** The targets of \a entry; without a value: as its files say. */
+std::vector<std::optional<shader_check::CheckTarget>> targets_of(const ShaderManifest::Entry &entry,
+                                                                 const std::string &option)
+{
+  std::vector<std::optional<shader_check::CheckTarget>> targets;
+  const bool is_option = !option.empty() && option != "auto";
+  for (const std::string &name : is_option ? std::vector{option} : entry.targets) {
+    std::ranges::copy(targets_of(name), std::back_inserter(targets));
+  }
+  return targets.empty() ? std::vector<std::optional<shader_check::CheckTarget>>{std::nullopt} : targets;
+}
+
+/** Checks FILES, or the programs of --manifest. */
+ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
+{
+  ShaderReport others;
+  ShaderManifest project =
+      arguments.manifest.empty() ? programs_of_files(arguments, others) : read_shader_manifest(arguments.manifest);
+  is_any_checked = !project.entries.empty() || others.program_count > 0;
+  for (ShaderManifest::Entry &entry : project.entries) {
+    std::ranges::transform(arguments.defines, std::back_inserter(entry.program.defines), define_of);
+  }
+  require_outputs(project.entries, arguments);
   shader_check::FolderFiles folder{fs::path()};
-  const gpu::ShaderFiles files = folder.files();
+  const std::string input =
+      arguments.input.empty() ? std::string() : std::string(std::istreambuf_iterator<char>(std::cin), {});
+  const gpu::ShaderFiles files = [&](std::string_view path) {
+    return !arguments.input.empty() && path == arguments.input ? std::optional<std::string_view>(input)
+                                                               : folder.text(path);
+  };
   shader_check::ProgramOptions options;
   options.include_folders = arguments.include_folders;
-  options.features = arguments.features;
+  std::ranges::copy(project.include_folders, std::back_inserter(options.include_folders));
+  options.features = project.features;
+  std::ranges::copy(arguments.features, std::back_inserter(options.features));
+  // Those of the command line are last and win.
+  read_levels(project.levels, options.levels, options.is_strict);
   read_levels(arguments.levels, options.levels, options.is_strict);
   std::vector<ShaderJob> jobs;
-  for (const shader_check::Program &program : programs) {
-    std::vector<std::optional<shader_check::CheckTarget>> targets{std::nullopt};
-    if (!arguments.target.empty() && arguments.target != "auto") {
-      const auto named = targets_of(arguments.target);
-      targets.assign(named.begin(), named.end());
-    }
-    for (const std::optional<shader_check::CheckTarget> target : targets) {
+  std::set<std::string_view> names;
+  for (const ShaderManifest::Entry &entry : project.entries) {
+    const shader_check::Program &program = entry.program;
+    names.insert(program.name);
+    for (const std::optional<shader_check::CheckTarget> target : targets_of(entry, arguments.target)) {
       shader_check::ProgramOptions job = options;
       job.target = target;
       const bool has_output = !arguments.output.empty();
@@ -400,26 +476,21 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
       for (const shader_check::Program::File &file : program.files) {
         key += fmt::format("file {} {}\n", int(file.stage), file.path);
       }
-      for (const auto &list : {program.defines, job.include_folders, job.features}) {
-        key += fmt::format("list {}\n", list.size());
-        for (const std::string &word : list) {
-          key += word + "\n";
-        }
-      }
-      for (const auto &[rule, level] : job.levels) {
-        key += fmt::format("{}={}\n", rule, int(level));
-      }
+      key += text_of(program.defines) + text_of(job.include_folders) + text_of(job.features) + text_of(job.levels);
       jobs.push_back({check, program.name, program.files.front().path,
                       target.value_or(shader_check::CheckTarget::OpenGl), std::move(key)});
     }
   }
   std::vector<shader_check::ProgramCheck> checks;
-  ShaderReport report = report_of(jobs, arguments, &checks);
+  ShaderReport report = report_of(jobs, files, arguments, &checks);
   if (!arguments.output.empty() && !report.has_errors()) {
-    write_output(programs, checks, arguments);
+    write_output(project.entries, checks, arguments);
   }
   if (!arguments.depfile.empty()) {
     std::vector<std::string> read;
+    if (!arguments.manifest.empty()) {
+      read.push_back(arguments.manifest);
+    }
     for (const shader_check::ProgramCheck &check : checks) {
       for (const std::string &path : check.files) {
         if (std::ranges::find(read, path) == read.end()) {
@@ -430,8 +501,8 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
     write_depfile(arguments.depfile, arguments.depfile_target.empty() ? arguments.output : arguments.depfile_target,
                   read);
   }
-  report.program_count = programs.size() + function_count;
-  report.variant_count = programs.size() + others.variant_count;
+  report.program_count = names.size() + others.program_count;
+  report.variant_count = project.entries.size() + others.variant_count;
   std::ranges::copy(others.messages, std::back_inserter(report.messages));
   for (const shader_check::CheckTarget target : others.targets) {
     if (std::ranges::find(report.targets, target) == report.targets.end()) {
@@ -444,12 +515,16 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
 
 void require_usage(const CheckArguments &a)
 {
-  if (!a.files.empty() && !a.shaders.empty()) {
-    throw UsageError("--shaders and FILES exclude each other");
+  if (!a.files.empty() + !a.shaders.empty() + !a.manifest.empty() > 1) {
+    throw UsageError("--shaders, --manifest and FILES exclude each other");
   }
-  if (a.files.empty() && !(a.include_folders.empty() && a.defines.empty() && a.stage.empty() && a.features.empty() &&
-                           a.cache.empty() && a.output.empty() && a.depfile.empty())) {
-    throw UsageError("-I, -D, -o, -MF, --stage, --feature and --cache are for FILES");
+  if (!a.manifest.empty() && !(a.output.empty() && a.stage.empty())) {
+    throw UsageError("-o and --stage are for FILES");
+  }
+  if (a.files.empty() && a.manifest.empty() &&
+      !(a.include_folders.empty() && a.defines.empty() && a.stage.empty() && a.features.empty() && a.output.empty() &&
+        a.depfile.empty())) {
+    throw UsageError("-I, -D, -o, -MF, --stage, --feature and --stdin are for FILES");
   }
   if (!a.output.empty() && a.target == "all") {
     throw UsageError("-o needs one target");
@@ -459,12 +534,16 @@ void require_usage(const CheckArguments &a)
   }
 }
 
-Status check(const CheckArguments &arguments)
+Status check(CheckArguments arguments)
 {
+  if (!arguments.input.empty() && std::ranges::find(arguments.files, arguments.input) == arguments.files.end()) {
+    arguments.files.push_back(arguments.input);
+  }
   require_usage(arguments);
   bool is_any_checked = true;
-  const ShaderReport report =
-      arguments.files.empty() ? check_engine(arguments) : check_files(arguments, is_any_checked);
+  const ShaderReport report = arguments.files.empty() && arguments.manifest.empty()
+                                  ? check_engine(arguments)
+                                  : check_files(arguments, is_any_checked);
   fmt::print("{}", arguments.format == "json"    ? to_json(report)
                    : arguments.format == "sarif" ? to_sarif(report)
                                                  : to_text(report));
@@ -507,7 +586,9 @@ void add_shaders_check(CLI::App &shaders, Status &status)
   command->add_option("--time-limit", a->time_limit, "Seconds for each program and target")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--cache", a->cache, "Folder of results by the content of FILES and their includes");
+  command->add_option("--manifest", a->manifest, "File of programs, permutations and targets, in place of FILES");
+  command->add_option("--cache", a->cache, "Folder of results by the content of all files that were read");
+  command->add_option("--stdin", a->input, "A path of FILES whose text comes from standard input, as an editor has it");
   command->add_option("-o", a->output, "File for the SPIR-V, or a folder for that of several FILES");
   command->add_option("--depfile,--MF", a->depfile, "-MD -MF FILE: writes the files that were read for make and ninja");
   command->add_flag("--MD")->description("With -MF, as compilers have it")->needs("--depfile");

@@ -175,6 +175,128 @@ TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
   EXPECT_EQ(result(""), first) << "damaged entries are written again";
 }
 
+TEST_F(ShaderFilesTest, CacheKnowsTheEnginesShaders)
+{
+  std::filesystem::copy(GNOMON_SOURCE "/shaders", folder / "tree", std::filesystem::copy_options::recursive);
+  const std::string arguments = "--shaders tree --program eevee_film --cache cache";
+  const Finished first = check(arguments);
+  EXPECT_EQ(first.status, 0) << first.out;
+  const auto newest = [&] {
+    auto time = std::filesystem::file_time_type::min();
+    for (const auto &entry : std::filesystem::directory_iterator(folder / "cache")) {
+      time = std::max(time, std::filesystem::last_write_time(entry));
+    }
+    return time;
+  };
+  const auto time = newest();
+  EXPECT_EQ(check(arguments).out.substr(0, 60), first.out.substr(0, 60));
+  EXPECT_EQ(newest(), time) << "all were read";
+  const std::string file = "tree/eevee/eevee_film_frag.glsl";
+  ASSERT_TRUE(std::filesystem::exists(folder / file));
+  write(file, read(file) + "\noops\n");
+  const Finished edited = check(arguments);
+  EXPECT_EQ(edited.status, 1);
+  EXPECT_EQ(edited.out.find(file + ":"), 0U) << edited.out;
+}
+
+TEST_F(ShaderFilesTest, AManifestNamesProgramsPermutationsAndTargets)
+{
+  write_file("p/lib/common.glsl", "vec4 common_value() { return vec4(N); }\n");
+  write_file("p/lit.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
+  write_file("p/other.frag", fragment_head +
+                                 "#include \"common.glsl\"\n#if defined(FOG) && LIGHTS == 4\noops\n#endif\n"
+                                 "void main() { c = common_value() * LIGHTS; }\n");
+  write_file("p/shaders.json",
+             R"({"include_folders": ["lib"], "defines": ["N=2"], "targets": ["vulkan1.0", "vulkan1.3"],
+    "programs": [{"name": "lit", "files": ["lit.vert", "other.frag"], "permutations": {"FOG": [null, true], "LIGHTS": [1, 4, 8]}},
+                 {"files": ["lit.vert"], "targets": ["opengl"]}]})");
+  const Finished finished = check("--manifest p/shaders.json --format json -MF d -MT t");
+  EXPECT_EQ(finished.status, 1) << finished.err;
+  const nlohmann::json json = nlohmann::json::parse(finished.out);
+  EXPECT_EQ(json["programs"], 2);
+  EXPECT_EQ(json["variants"], 7);
+  ASSERT_EQ(json["errors"], 1) << finished.out;
+  EXPECT_EQ(json["messages"][0]["file"], "p/other.frag");
+  ASSERT_EQ(json["messages"][0]["where"].size(), 2U) << "two targets of one permutation";
+  EXPECT_EQ(json["messages"][0]["where"][0]["variant"], "N 2 FOG 1 LIGHTS 4");
+  EXPECT_EQ(read("d"), "t: \\\n  p/shaders.json \\\n  p/lit.vert \\\n  p/other.frag \\\n  p/lib/common.glsl\n");
+  EXPECT_EQ(check("--manifest p/shaders.json lit.vert").status, 2);
+  EXPECT_EQ(check("--manifest p/shaders.json -o spirv").status, 2);
+  EXPECT_EQ(check("--manifest p/none.json").status, 1);
+}
+
+TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
+{
+  const nlohmann::json schema = nlohmann::json::parse(std::ifstream(GNOMON_SOURCE "/doc/shader-manifest.schema.json"));
+  write("lit.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
+  write("lit.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  write("blur.comp", "#version 450\nlayout(local_size_x = 1) in;\nvoid main() {}\n");
+  for (const nlohmann::json &example : schema["examples"]) {
+    write("m.json", example.dump());
+    const Finished finished = check("--manifest m.json");
+    EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
+  }
+  const auto rejected = [&](const nlohmann::json &manifest, const std::string &place) {
+    write("m.json", manifest.dump());
+    const Finished finished = check("--manifest m.json");
+    EXPECT_EQ(finished.status, 1) << manifest;
+    EXPECT_NE(finished.err.find("m.json: " + place), std::string::npos) << manifest << finished.err;
+    EXPECT_EQ(finished.out, "");
+  };
+  const nlohmann::json right = {{"programs", {{{"files", {"lit.vert"}}}}}};
+  // Each property of the schema is known, and has another type than this.
+  for (const auto &[key, value] : schema["properties"].items()) {
+    nlohmann::json wrong = right;
+    wrong[key] = 7;
+    if (key != "$schema") {
+      rejected(wrong, "/" + key);
+    }
+  }
+  for (const auto &[key, value] : schema["properties"]["programs"]["items"]["properties"].items()) {
+    nlohmann::json wrong = right;
+    wrong["programs"][0][key] = 7;
+    rejected(wrong, "/programs/0/" + key);
+  }
+  nlohmann::json wrong = right;
+  wrong["program"] = 1;
+  rejected(wrong, "the whole: 'program' is unknown");
+  wrong = right;
+  wrong["programs"][0]["targets"] = {"vulkan9"};
+  rejected(wrong, "/programs/0/targets/0: 'vulkan9' is no target");
+  wrong["programs"][0] = {{"files", {"lit.vert", "other.vert"}}};
+  rejected(wrong, "/programs/0/files/1: the program has two files of the vertex stage");
+  std::vector<int> many(300);
+  wrong["programs"][0] = {{"files", {"lit.vert"}}, {"permutations", {{"A", many}, {"B", many}}}};
+  rejected(wrong, "/programs/0/permutations/B: the program has more than 65536 permutations");
+  rejected(nlohmann::json::array(), "the whole: an object is needed");
+  write("m.json", "{\"programs\": [}");
+  EXPECT_NE(check("--manifest m.json").err.find("line 1"), std::string::npos);
+  for (const nlohmann::json &target : schema["$defs"]["target"]["enum"]) {
+    nlohmann::json known = right;
+    known["targets"] = {target};
+    write("m.json", known.dump());
+    EXPECT_EQ(check("--manifest m.json").err, "") << target;
+  }
+}
+
+TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
+{
+  write("text.txt", fragment_head + "#include \"near.glsl\"\nvoid main() { c = vec4(near_value + oops); }\n");
+  write_file("shaders/near.glsl", "float near_value = 1.0;\n");
+  write_file("shaders/a.frag", "what was saved\n");
+  write("through.sh", "#!/bin/sh\nexec '" GNOMON_PROGRAM "' \"$@\" < text.txt\n");
+  std::filesystem::permissions(folder / "through.sh", std::filesystem::perms::owner_all);
+  for (const std::string path : {"shaders/a.frag", "shaders/new.frag"}) {
+    const Finished finished = run("shaders check --stdin " + path + " --format json", folder / "through.sh");
+    EXPECT_EQ(finished.status, 1) << finished.err;
+    const nlohmann::json json = nlohmann::json::parse(finished.out);
+    ASSERT_GE(json["messages"].size(), 1U) << finished.out;
+    EXPECT_EQ(json["messages"][0]["file"], path);
+    EXPECT_EQ(json["messages"][0]["line"], 4);
+  }
+  EXPECT_EQ(run("shaders check --stdin shaders/near.glsl --stage frag", folder / "through.sh").status, 1);
+}
+
 TEST_F(ShaderFilesTest, LevelsAreOptions)
 {
   write("a.frag",

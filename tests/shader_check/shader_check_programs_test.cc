@@ -267,6 +267,17 @@ TEST(CheckProgram, LineDirectivesMoveLinesAndFiles)
   }
 }
 
+TEST(CheckProgram, NamesThatAreKeywordsElsewhereStayInMessages)
+{
+  for (const std::string name : {"highp", "mediump", "highp_value", "not_highp"}) {
+    const ProgramCheck check =
+        check_texts({{"x.frag", "#version 110\nvoid main() {\n  gl_FragColor = vec4(" + name + ");\n}\n"}},
+                    for_target(CheckTarget::OpenGl));
+    EXPECT_EQ(messages_of(check).find(fmt::format("x.frag:3: error: '{}' : undeclared identifier", name)), 0U)
+        << messages_of(check);
+  }
+}
+
 /** A fragment shader that includes by \a lines and returns \a value. */
 std::string including(const std::string &lines, const std::string &value)
 {

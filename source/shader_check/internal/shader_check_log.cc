@@ -17,16 +17,16 @@ std::string_view without_space_at_end(std::string_view text)
   return text.substr(0, text.find_last_not_of(" \t\r\n\v\f") + 1);
 }
 
-/** \a text without `highp`, which glslang adds for Vulkan and our sources do not contain. */
+/** \a text without the `highp` before types, which glslang adds for Vulkan. */
 std::string without_precision(std::string_view text)
 {
-  constexpr std::string_view precision = "highp";
+  constexpr std::string_view precision = "highp ";
   std::string result;
   std::size_t from = 0;
-  for (std::size_t at = find_word(text, precision); at != std::string_view::npos;
-       at = find_word(text, precision, from)) {
-    result += text.substr(from, at - from);
-    from = std::min(at + precision.size() + 1, text.size());
+  for (std::size_t at = text.find(precision); at != std::string_view::npos; at = text.find(precision, from)) {
+    const bool is_word = at == 0 || !gpu::is_word_character(text[at - 1]);
+    result += text.substr(from, at - from + (is_word ? 0 : precision.size()));
+    from = at + precision.size();
   }
   return result += text.substr(from);
 }

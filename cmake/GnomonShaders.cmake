@@ -1,0 +1,76 @@
+# gnomon_check_shaders(TARGET NAME FILES FILE... [SHADER_TARGET TARGET] [INCLUDE_FOLDERS FOLDER...] [DEFINES NAME[=VALUE]...]
+#                      [OPTIONS OPTION...] [OUTPUT_FOLDER FOLDER])
+#
+# Checks shaders by `gnomon shaders check` at build time: once, and again when a shader or a file that it includes has changed. An error
+# fails the build with file and line.
+#
+# TARGET: a target of the project, which then depends on the check, or the name of a new one that is a part of `all`.
+# FILES: files whose names differ in the stage only are one program. Paths are relative to the current source folder.
+# SHADER_TARGET: vulkan1.0 to vulkan1.3, opengl, opengl-spirv, es; by default as each program says.
+# OPTIONS: others of `gnomon shaders check`, such as -Werror.
+# OUTPUT_FOLDER: gets NAME.spv for each file, for targets with SPIR-V.
+function(gnomon_check_shaders)
+  cmake_parse_arguments(PARSE_ARGV 0 CHECK "" "TARGET;SHADER_TARGET;OUTPUT_FOLDER" "FILES;INCLUDE_FOLDERS;DEFINES;OPTIONS")
+  if(NOT CHECK_TARGET OR NOT CHECK_FILES OR CHECK_UNPARSED_ARGUMENTS OR CHECK_KEYWORDS_MISSING_VALUES)
+    message(FATAL_ERROR "gnomon_check_shaders: TARGET and FILES are needed; unknown: '${CHECK_UNPARSED_ARGUMENTS}'; without a value: "
+      "'${CHECK_KEYWORDS_MISSING_VALUES}'")
+  endif()
+  find_program(GNOMON_PROGRAM gnomon HINTS ${GNOMON_PROGRAM_FOLDER} REQUIRED)
+  set(OPTIONS ${CHECK_OPTIONS})
+  if(CHECK_SHADER_TARGET)
+    list(APPEND OPTIONS --target ${CHECK_SHADER_TARGET})
+  endif()
+  foreach(FOLDER IN LISTS CHECK_INCLUDE_FOLDERS)
+    cmake_path(ABSOLUTE_PATH FOLDER)
+    list(APPEND OPTIONS -I ${FOLDER})
+  endforeach()
+  foreach(DEFINE IN LISTS CHECK_DEFINES)
+    list(APPEND OPTIONS -D ${DEFINE})
+  endforeach()
+  if(CHECK_OUTPUT_FOLDER)
+    cmake_path(ABSOLUTE_PATH CHECK_OUTPUT_FOLDER BASE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+    file(MAKE_DIRECTORY ${CHECK_OUTPUT_FOLDER})
+    list(APPEND OPTIONS -o ${CHECK_OUTPUT_FOLDER})
+  endif()
+
+  set(PROGRAMS "")
+  foreach(FILE IN LISTS CHECK_FILES)
+    cmake_path(ABSOLUTE_PATH FILE)
+    # As the program groups files: NAME.vert, NAME.vert.glsl and NAME_vert.glsl.
+    string(REGEX REPLACE "[._](vert|tesc|tese|geom|task|mesh|frag|comp|rgen|rint|rahit|rchit|rmiss|rcall)(\\.glsl)?$" "" PROGRAM ${FILE})
+    string(SHA256 KEY ${PROGRAM})
+    if(NOT DEFINED FILES_${KEY})
+      list(APPEND PROGRAMS ${PROGRAM})
+      set(FILES_${KEY} "")
+    endif()
+    list(APPEND FILES_${KEY} ${FILE})
+  endforeach()
+
+  set(FOLDER ${CMAKE_CURRENT_BINARY_DIR}/${CHECK_TARGET}.shaders)
+  file(MAKE_DIRECTORY ${FOLDER})
+  set(STAMPS "")
+  foreach(PROGRAM IN LISTS PROGRAMS)
+    string(SHA256 KEY ${PROGRAM})
+    cmake_path(GET PROGRAM FILENAME NAME)
+    string(SUBSTRING ${KEY} 0 8 NUMBER)
+    set(STAMP ${FOLDER}/${NAME}.${NUMBER}.checked)
+    set(SPIRV "")
+    if(CHECK_OUTPUT_FOLDER)
+      foreach(FILE IN LISTS FILES_${KEY})
+        cmake_path(GET FILE FILENAME FILE_NAME)
+        list(APPEND SPIRV ${CHECK_OUTPUT_FOLDER}/${FILE_NAME}.spv)
+      endforeach()
+    endif()
+    add_custom_command(OUTPUT ${STAMP} BYPRODUCTS ${SPIRV} DEPENDS ${FILES_${KEY}} DEPFILE ${STAMP}.d
+      COMMAND ${GNOMON_PROGRAM} shaders check ${FILES_${KEY}} ${OPTIONS} -MD -MF ${STAMP}.d -MT ${STAMP}
+      COMMAND ${CMAKE_COMMAND} -E touch ${STAMP}
+      COMMENT "Checking shaders of ${NAME}" VERBATIM)
+    list(APPEND STAMPS ${STAMP})
+  endforeach()
+  if(TARGET ${CHECK_TARGET})
+    add_custom_target(${CHECK_TARGET}_shaders DEPENDS ${STAMPS})
+    add_dependencies(${CHECK_TARGET} ${CHECK_TARGET}_shaders)
+  else()
+    add_custom_target(${CHECK_TARGET} ALL DEPENDS ${STAMPS})
+  endif()
+endfunction()

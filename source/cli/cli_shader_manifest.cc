@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+#include "cli_shader_manifest.hh"
+
+#include "cli_shader_files.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using nlohmann::json;
+
+/** A value of the manifest and its place, for messages. */
+class ManifestValue {
+ public:
+  ManifestValue(const json &value, std::string place) : value_(value), place_(std::move(place)) {}
+
+  [[noreturn]] void fail(std::string_view reason) const
+  {
+    throw std::runtime_error(fmt::format("{}: {}", place_.empty() ? "the whole" : place_, reason));
+  }
+  /** The member \a key, or null if there is none. */
+  ManifestValue at(const char *key)
+  {
+    known_.insert(key);
+    static const json none;
+    const auto found = value_.find(key);
+    return {found == value_.end() ? none : *found, place_ + "/" + key};
+  }
+  bool is_given() const
+  {
+    return !value_.is_null();
+  }
+  /** Call it before at(). */
+  void require_object() const
+  {
+    if (!value_.is_object()) {
+      fail("an object is needed");
+    }
+  }
+  /** Call it after at() of all keys that are known. */
+  void require_known_keys() const
+  {
+    for (const auto &[key, value] : value_.items()) {
+      if (!known_.contains(key)) {
+        fail(fmt::format("'{}' is unknown; known are {}", key, fmt::join(known_, ", ")));
+      }
+    }
+  }
+  std::string text() const
+  {
+    if (!value_.is_string() || value_.get_ref<const std::string &>().empty()) {
+      fail("a string is needed");
+    }
+    return value_;
+  }
+  /** A string or number, as a define has it. */
+  std::string word() const
+  {
+    if (!value_.is_number_integer() && !value_.is_boolean()) {
+      return text();
+    }
+    return value_.is_boolean() ? (value_.get<bool>() ? "1" : "0") : value_.dump();
+  }
+  /** Empty if it is not given. */
+  std::vector<ManifestValue> list() const
+  {
+    if (is_given() && !value_.is_array()) {
+      fail("an array is needed");
+    }
+    std::vector<ManifestValue> values;
+    for (std::size_t i = 0; i < value_.size(); i++) {
+      values.emplace_back(value_[i], fmt::format("{}/{}", place_, i));
+    }
+    return values;
+  }
+  std::vector<std::string> texts() const
+  {
+    std::vector<std::string> texts;
+    std::ranges::transform(list(), std::back_inserter(texts), &ManifestValue::text);
+    return texts;
+  }
+  /** Members by name; empty if it is not given. */
+  std::vector<std::pair<std::string, ManifestValue>> members() const
+  {
+    std::vector<std::pair<std::string, ManifestValue>> members;
+    if (is_given()) {
+      require_object();
+      for (const auto &[key, value] : value_.items()) {
+        members.emplace_back(key, ManifestValue(value, place_ + "/" + key));
+      }
+    }
+    return members;
+  }
+
+ private:
+  const json &value_;
+  std::string place_;
+  std::set<std::string> known_;
+};
+
+std::vector<std::string> targets_in(const ManifestValue &value)
+{
+  std::vector<std::string> targets;
+  for (const ManifestValue &target : value.list()) {
+    targets.push_back(target.text());
+    if (std::ranges::find(shader_check::check_targets(), targets.back(), &shader_check::TargetName::name) ==
+        shader_check::check_targets().end()) {
+      std::vector<std::string_view> names;
+      std::ranges::transform(shader_check::check_targets(), std::back_inserter(names), &shader_check::TargetName::name);
+      target.fail(fmt::format("'{}' is no target; there are {}", targets.back(), fmt::join(names, ", ")));
+    }
+  }
+  return targets;
+}
+
+std::vector<std::string> defines_in(const ManifestValue &value)
+{
+  std::vector<std::string> defines;
+  for (const ManifestValue &define : value.list()) {
+    defines.push_back(shader_define(define.text()));
+    if (defines.back().empty()) {
+      define.fail("NAME or NAME=VALUE is needed");
+    }
+  }
+  return defines;
+}
+
+/** All combinations of the values of each name. A value `null` leaves the name undefined. */
+std::vector<std::vector<std::string>> permutations_in(const ManifestValue &value)
+{
+  std::vector<std::vector<std::string>> all{{}};
+  for (const auto &[name, values] : value.members()) {
+    std::vector<std::vector<std::string>> longer;
+    const std::vector<ManifestValue> choices = values.list();
+    if (choices.empty()) {
+      values.fail("at least one value is needed");
+    }
+    if (all.size() * choices.size() > permutations_max) {
+      values.fail(fmt::format("the program has more than {} permutations", permutations_max));
+    }
+    for (const std::vector<std::string> &defines : all) {
+      for (const ManifestValue &choice : choices) {
+        longer.push_back(defines);
+        if (choice.is_given()) {
+          longer.back().push_back(fmt::format("{} {}", name, choice.word()));
+        }
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+shader_check::Program program_in(ManifestValue &value, const fs::path &folder)
+{
+  shader_check::Program program;
+  const ManifestValue files = value.at("files");
+  for (const ManifestValue &file : files.list()) {
+    const fs::path path = (folder / file.text()).lexically_normal();
+    const std::optional<shader_check::Stage> stage = stage_of(path);
+    if (!stage) {
+      file.fail("its name gives no stage");
+    }
+    if (std::ranges::find(program.files, *stage, &shader_check::Program::File::stage) != program.files.end()) {
+      file.fail(fmt::format("the program has two files of the {} stage", to_string(*stage)));
+    }
+    program.files.push_back({*stage, path.string()});
+  }
+  if (program.files.empty()) {
+    files.fail("at least one file is needed");
+  }
+  const ManifestValue name = value.at("name");
+  program.name = name.is_given() ? name.text() : stem_of(program.files.front().path);
+  return program;
+}
+
+ShaderManifest manifest_in(const json &document, const fs::path &folder)
+{
+  ShaderManifest manifest;
+  ManifestValue root(document, "");
+  root.require_object();
+  static_cast<void>(root.at("$schema"));
+  for (const std::string &include : root.at("include_folders").texts()) {
+    manifest.include_folders.push_back((folder / include).lexically_normal().string());
+  }
+  manifest.levels = root.at("levels").texts();
+  manifest.features = root.at("features").texts();
+  const std::vector<std::string> targets = targets_in(root.at("targets"));
+  const std::vector<std::string> defines = defines_in(root.at("defines"));
+  const ManifestValue programs = root.at("programs");
+  if (programs.list().empty()) {
+    programs.fail("at least one program is needed");
+  }
+  root.require_known_keys();
+  for (ManifestValue value : programs.list()) {
+    value.require_object();
+    const shader_check::Program program = program_in(value, folder);
+    const ManifestValue own_targets = value.at("targets");
+    const std::vector<std::string> own_defines = defines_in(value.at("defines"));
+    const std::vector<std::vector<std::string>> permutations = permutations_in(value.at("permutations"));
+    for (const std::vector<std::string> &permutation : permutations) {
+      ShaderManifest::Entry &entry =
+          manifest.entries.emplace_back(program, own_targets.is_given() ? targets_in(own_targets) : targets);
+      for (const auto &list : {defines, own_defines, permutation}) {
+        entry.program.defines.insert(entry.program.defines.end(), list.begin(), list.end());
+      }
+    }
+    value.require_known_keys();
+  }
+  return manifest;
+}
+
+}  // namespace
+
+std::string shader_define(const std::string &argument)
+{
+  const std::size_t equals = argument.find('=');
+  const std::string name = argument.substr(0, equals);
+  return name.empty() ? "" : name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
+}
+
+ShaderManifest read_shader_manifest(const fs::path &path)
+{
+  std::ifstream stream(path);
+  if (!stream || fs::is_directory(path)) {
+    throw std::runtime_error(fmt::format("{}: the file cannot be read", path.string()));
+  }
+  try {
+    return manifest_in(json::parse(stream), path.parent_path());
+  }
+  catch (const std::exception &error) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+}  // namespace gnomon::cli
