@@ -20,7 +20,7 @@ struct Budgeted {
   Budgeted(render_scene::RenderScene &drawn_scene, Engine &drawing_engine, double part_seconds)
       : scene(drawn_scene),
         engine(drawing_engine),
-        viewport(scene.device(), size_px),
+        viewport(scene.device(), budget_picture_size_px),
         picture(scene, engine, viewport, [this, part_seconds] {
           seconds += 0.5 * part_seconds;
           return seconds;
@@ -33,7 +33,7 @@ struct Budgeted {
     picture.begin(budget);
     scene.update();
     viewport.sync(std::span(&one, 1), scene.objects());
-    return picture.draw(view_of(camera, size_px, scene.origin_ws()), target);
+    return picture.draw(view_of(camera, budget_picture_size_px, scene.origin_ws()), target);
   }
   /** \return the number of calls */
   int refine(const scene::PlacedCamera &camera)
@@ -72,7 +72,7 @@ class BudgetGpuTest : public test::GpuDeviceTest {
   }
   std::vector<glm::vec4> without_budget(const Settings &with)
   {
-    SceneRenderer renderer(*device, scene, size_px, with);
+    SceneRenderer renderer(*device, scene, budget_picture_size_px, with);
     renderer.sync();
     renderer.draw(camera);
     return renderer.read_picture();
@@ -211,7 +211,7 @@ TEST_F(BudgetGpuTest, ViewportsThatDrawOneLayerACallDoNotReplaceEachOthersLayers
 
 TEST_F(BudgetGpuTest, TheFirstPictureAfterAnEditIsWholeAndShowsTheEdit)
 {
-  const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, size_px);
+  const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, budget_picture_size_px);
   draw::Target target = texture.target();
   target.encoding = draw::Encoding::SceneLinear;
   render_scene::RenderScene render_scene(*device, scene);
@@ -226,7 +226,7 @@ TEST_F(BudgetGpuTest, TheFirstPictureAfterAnEditIsWholeAndShowsTheEdit)
   const auto expect_whole = [&](double &sum) {
     EXPECT_FALSE(budgeted.draw(camera, target));
     EXPECT_EQ(budgeted.picture.report().kind, BudgetReport::Kind::Preview);
-    EXPECT_LT(budgeted.picture.report().drawn_size_px.x, size_px.x);
+    EXPECT_LT(budgeted.picture.report().drawn_size_px.x, budget_picture_size_px.x);
     const std::vector<glm::vec4> truth = without_budget(preview);
     const std::vector<glm::vec4> shown = gpu::read_as<glm::vec4>(*device, texture.texture());
     double difference = 0.0;

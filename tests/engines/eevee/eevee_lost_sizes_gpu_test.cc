@@ -14,7 +14,7 @@
 namespace gnomon::eevee {
 namespace {
 
-constexpr glm::ivec2 size_px{48, 32};
+constexpr glm::ivec2 lost_sizes_size_px{48, 32};
 
 /** A scene of a ground, a box and a lamp without a size, and the one thing that has a size. */
 struct SizedScene {
@@ -139,12 +139,12 @@ TEST_F(LostSizesGpu, ThePictureIsThatOfANewRenderer)
     SizedScene sized;
     way.gain(sized);
     Settings now = settings();
-    SceneRenderer live(*device, sized.scene, size_px, now);
+    SceneRenderer live(*device, sized.scene, lost_sizes_size_px, now);
     const std::vector<glm::vec4> before = picture_of(live);
     way.lose(sized, now);
     live.set_settings(now);
     const std::vector<glm::vec4> lost = picture_of(live);
-    SceneRenderer fresh(*device, sized.scene, size_px, now);
+    SceneRenderer fresh(*device, sized.scene, lost_sizes_size_px, now);
     EXPECT_TRUE(lost == picture_of(fresh)) << way.name;
     EXPECT_FALSE(lost == before) << way.name << ": the thing with a size has no effect";
     EXPECT_TRUE(lost == picture_of(live)) << way.name << ", drawn again";
@@ -160,9 +160,9 @@ TEST_F(LostSizesGpu, TwoViewportsInTurnsKeepTheirOwnPoints)
   shared.update();
   Engine engine(shared, settings());
   const std::array<draw::Engine *, 1> engines = {&engine};
-  const auto view = [&] { return view_of(camera, size_px); };
-  draw::Viewport first(*device, size_px);
-  draw::Viewport second(*device, size_px);
+  const auto view = [&] { return view_of(camera, lost_sizes_size_px); };
+  draw::Viewport first(*device, lost_sizes_size_px);
+  draw::Viewport second(*device, lost_sizes_size_px);
   for (draw::Viewport *viewport : {&first, &second}) {
     viewport->sync(engines, shared.objects());
   }
@@ -172,7 +172,7 @@ TEST_F(LostSizesGpu, TwoViewportsInTurnsKeepTheirOwnPoints)
       second.draw(engines, view());
     }
   }
-  SceneRenderer fresh(*device, sized.scene, size_px, settings());
+  SceneRenderer fresh(*device, sized.scene, lost_sizes_size_px, settings());
   const std::vector<glm::vec4> expected = picture_of(fresh);
   EXPECT_TRUE(gpu::read_as<glm::vec4>(*device, engine.radiance(first)) == expected);
   EXPECT_TRUE(gpu::read_as<glm::vec4>(*device, engine.radiance(second)) == expected);

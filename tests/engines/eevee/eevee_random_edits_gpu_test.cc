@@ -14,7 +14,7 @@ namespace {
 
 using scene::Handle;
 
-constexpr glm::ivec2 size_px{96, 54};
+constexpr glm::ivec2 random_edits_size_px{96, 54};
 
 /** Edits a scene with things of all kinds, and keeps it finite and small. */
 class RandomEditor {
@@ -206,7 +206,7 @@ TEST_F(RandomEdits, GiveThePictureOfASceneBuiltInTheFinalState)
   for (const auto &[picture_count, edits_between_pictures] : {std::pair(200, 1), {20, 20}, {8, 1000}}) {
     scene::Scene scene;
     RandomEditor editor(scene, 7);
-    SceneRenderer edited(*device, scene, size_px, settings());
+    SceneRenderer edited(*device, scene, random_edits_size_px, settings());
     for (int i = 1; i <= picture_count * edits_between_pictures; i++) {
       editor.edit();
       // The renderer is synced for some of the intermediate states only.
@@ -218,7 +218,7 @@ TEST_F(RandomEdits, GiveThePictureOfASceneBuiltInTheFinalState)
         continue;
       }
       const scene::Scene copy = scene;
-      SceneRenderer fresh(*device, copy, size_px, settings());
+      SceneRenderer fresh(*device, copy, random_edits_size_px, settings());
       ASSERT_LE(rms_difference(picture_of(edited), picture_of(fresh)), 1e-4)
           << "after " << i << " edits, " << edits_between_pictures << " between pictures";
     }
@@ -233,7 +233,7 @@ TEST_F(RandomEdits, TwoViewportsOfOneSceneDrawItFromOneCopy)
   render_scene::RenderScene shared(*device, scene);
   shared.update();
   Engine engine(shared, settings());
-  draw::Viewport first(*device, size_px);
+  draw::Viewport first(*device, random_edits_size_px);
   draw::Viewport second(*device, {54, 54});
   const std::array<draw::Engine *, 1> engines = {&engine};
   const auto draw_in = [&](draw::Viewport &viewport, const scene::PlacedCamera &from) {

@@ -20,7 +20,7 @@ using test::PictureDifference;
 using test::SceneEdit;
 using EditPixels = std::vector<glm::vec4>;
 
-constexpr glm::ivec2 size_px{40, 28};
+constexpr glm::ivec2 single_edits_size_px{40, 28};
 
 /** Maps that are fitted to the picture without slack, so that they do not depend on pictures before. */
 Settings small_settings(int sample_count)
@@ -48,8 +48,8 @@ class TwoViewports {
   TwoViewports(gpu::Device &device, const scene::Scene &scene, const Settings &settings)
       : render_scene_(device, scene),
         engine_(render_scene_, settings),
-        first_(device, size_px),
-        second_(device, size_px)
+        first_(device, single_edits_size_px),
+        second_(device, single_edits_size_px)
   {
   }
   void set_settings(const Settings &settings)
@@ -74,7 +74,7 @@ class TwoViewports {
     viewport.sync(engines, render_scene_.objects());
     viewport.restart();
     while (viewport.samples_drawn() < engine_.settings().drawn_sample_count()) {
-      viewport.draw(engines, view_of(camera, size_px));
+      viewport.draw(engines, view_of(camera, single_edits_size_px));
     }
     EditPixels pixels = gpu::read_as<glm::vec4>(viewport.device(), engine_.radiance(viewport));
     for (glm::vec4 &pixel : pixels) {
@@ -110,8 +110,8 @@ EditPictures new_pictures(gpu::Device &device, const scene::Scene &scene)
 class LiveRenderers {
  public:
   LiveRenderers(gpu::Device &device, const scene::Scene &scene)
-      : one_sample_(device, scene, size_px, small_settings(1)),
-        several_samples_(device, scene, size_px, small_settings(4)),
+      : one_sample_(device, scene, single_edits_size_px, small_settings(1)),
+        several_samples_(device, scene, single_edits_size_px, small_settings(4)),
         two_(device, scene, small_settings(1))
   {
   }
@@ -323,7 +323,7 @@ TEST_F(SingleEditsGpu, OfEachSettingGiveThePictureOfANewRenderer)
     for (const int sample_count : {1, 4}) {
       const Settings settings = small_settings(sample_count);
       // One viewport each: the memory of shadows is divided among viewports.
-      SceneRenderer live(*device, scenes[i], size_px, settings);
+      SceneRenderer live(*device, scenes[i], single_edits_size_px, settings);
       const auto picture_of = [](SceneRenderer &renderer) {
         renderer.sync();
         renderer.draw(first_camera());
@@ -338,7 +338,7 @@ TEST_F(SingleEditsGpu, OfEachSettingGiveThePictureOfANewRenderer)
         edit.change(changed);
         live.set_settings(changed);
         const EditPixels edited = picture_of(live);
-        SceneRenderer made(*device, scenes[i], size_px, changed);
+        SceneRenderer made(*device, scenes[i], single_edits_size_px, changed);
         const PictureDifference difference = difference_of(edited, picture_of(made));
         EXPECT_LE(difference.rms, edit.rms_max) << edit.name << ", scene " << i << ", " << sample_count << " samples";
         live.set_settings(settings);
