@@ -85,8 +85,8 @@ TEST_F(ShaderFilesTest, AProgramThatTakesTooLongIsEndedAndOthersAreChecked)
   write("good.frag", fragment_head + "void main() { c = vec4(1); }\n");
   write("bad.frag", fragment_head + "void main() { c = oops; }\n");
   const auto start = std::chrono::steady_clock::now();
-  const Finished finished = check("endless.frag good.frag bad.frag --time-limit 0.5");
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20.0);
+  const Finished finished = check("endless.frag good.frag bad.frag --time-limit 3");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 60.0);
   EXPECT_EQ(finished.status, 1);
   EXPECT_NE(finished.out.find("endless.frag:1: error: the check of this program takes more than "), std::string::npos)
       << finished.out;
