@@ -68,9 +68,9 @@ TEST_F(CliSettings, EachOptionIsInTheHelpAndTakesWhatItsRowAllows)
         EXPECT_EQ(status(number_text(limits.min)), 1) << option << ' ' << limits.min;
         EXPECT_NE(help.find(fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max)), std::string::npos)
             << option;
+        EXPECT_EQ(status(number_text(limits.min - 1.0)), 2) << option;
+        EXPECT_EQ(status(number_text(limits.max + std::max(1.0, 0.01 * limits.max))), 2) << option;
       }
-      EXPECT_EQ(status(number_text(limits.min - 1.0)), 2) << option;
-      EXPECT_EQ(status(number_text(limits.max + std::max(1.0, 0.01 * limits.max))), 2) << option;
       EXPECT_EQ(status("nan"), 2) << option;
     }
   });
@@ -129,6 +129,9 @@ TEST_F(CliSettings, AReportHasThePicturesSettingsByTheirNames)
 
 TEST_F(CliSettings, OneOptionSetsTheSizesOfAllShadowsAsFarAsTheirLimitsAllow)
 {
+  for (const int size : {0, 16385}) {
+    EXPECT_EQ(run(fmt::format("render missing.glb -o out.exr --shadow-size {}", size)).status, 2) << size;
+  }
   for (const auto &[size, layer] : {std::pair(1, 4), {16384, 8192}}) {
     const test::Finished finished =
         run(fmt::format("render '{}/examples/scenes/plaza.glb' --backend null --size 16x8 --json out.json "

@@ -12,7 +12,7 @@
 namespace gnomon::eevee {
 namespace {
 
-constexpr glm::ivec2 size_px(48, 36);
+constexpr glm::ivec2 budget_picture_size_px(48, 36);
 constexpr double budget = 0.01;
 
 /** A viewport whose parts take \a part_seconds each. */
