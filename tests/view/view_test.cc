@@ -303,7 +303,7 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
        std::vector<std::pair<std::string, std::vector<std::string>>>{{"power", {"-1"}},
                                                                      {"power", {"nan"}},
                                                                      {"power", {"1", "2"}},
-                                                                     {"color", {"1", "2", "0"}},
+                                                                     {"color", {"1", "-2", "0"}},
                                                                      {"kind", {"torch"}},
                                                                      {"kind", {}}}) {
     EXPECT_THROW(set(name, words), std::runtime_error) << name;

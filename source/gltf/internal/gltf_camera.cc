@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_camera.hh"
 
+#include "internal/gltf_extra.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_units.hh"
 
@@ -31,24 +32,26 @@ using std::numbers::pi;
 std::string camera_fault(const Camera &camera)
 {
   const bool is_perspective = camera.kind == CameraKind::Perspective;
-  const auto is_length = [](float value) { return value >= length_min && value <= large; };
-  if (is_perspective && !(camera.vertical_angle > 1e-6F && camera.vertical_angle < static_cast<float>(pi))) {
-    return "yfov " + text(camera.vertical_angle) + " is not between 0 and pi";
-  }
-  if (is_perspective && camera.aspect != 0.0F && !(camera.aspect >= 1e-6F && camera.aspect <= 1e6F)) {
-    return "aspectRatio " + text(camera.aspect) + " is out of range";
-  }
-  if (!is_perspective && !(is_length(camera.half_width) && is_length(camera.half_height))) {
-    return "xmag " + text(camera.half_width) + " and ymag " + text(camera.half_height) + " must be above 0";
-  }
-  if (is_perspective ? !is_length(camera.near) : !(camera.near >= 0.0F && camera.near <= large)) {
-    return "znear " + text(camera.near) + " is out of range";
-  }
+  std::string fault;
+  Camera::for_each_property([&](const auto &row) {
+    if (row.path.empty() || !row.has_kind(unsigned(camera.kind))) {
+      return;
+    }
+    scene::for_each_number(camera.*row.member, [&](double value) {
+      // No view begins behind the camera, and a perspective one not at it.
+      const Range range = row.name != "near" ? range_of(row) : is_perspective ? length_range : not_negative;
+      const bool is_zero = value == 0.0 && !row.zero.empty();
+      if (fault.empty() && !is_zero && !range.contains(value)) {
+        const std::string_view member = row.path.substr(row.path.rfind('/') + 1);
+        fault = std::string(member) + ' ' + text(value) + " must be " + range.text();
+      }
+    });
+  });
   const bool is_infinite = is_perspective && camera.far == 0.0F;
-  if (!is_infinite && !(camera.far > camera.near && is_length(camera.far))) {
-    return "zfar " + text(camera.far) + " is not above znear " + text(camera.near) + ", or out of range";
+  if (fault.empty() && !is_infinite && !(camera.far > camera.near)) {
+    fault = "zfar " + text(camera.far) + " is not above znear " + text(camera.near);
   }
-  return {};
+  return fault;
 }
 
 /**

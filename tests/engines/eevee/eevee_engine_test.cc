@@ -243,14 +243,11 @@ TEST_F(EngineTest, DrawAfterAFailedSyncIsAnErrorUntilASyncSucceeds)
   test::add_lamp(scene, scene::LampKind::Point, {1, 0, 2}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 16}});
   renderer.draw(camera);
-  const auto lamp = test::handle_at(scene.lamps(), 1);
-  scene.edit(lamp, [](scene::Lamp &value) {
-    value.shadow.kind = scene::ShadowKind::Esm;
-    value.shadow.filter_angle = 0.7F;
-  });
+  // Shadows refuse the kernel, after the limits of all numbers are checked.
+  renderer.engine.set_settings({.shadow = {.cube_size_px = 16, .pcf = {.width = 2}}});
   EXPECT_THROW(renderer.sync(), gpu::Error);
   EXPECT_THROW(renderer.draw(camera), gpu::Error);
-  scene.edit(lamp, [](scene::Lamp &value) { value.shadow.filter_angle = 0.1F; });
+  renderer.engine.set_settings({.shadow = {.cube_size_px = 16}});
   renderer.sync();
   renderer.draw(camera);
 }
