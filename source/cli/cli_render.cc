@@ -3,6 +3,7 @@
 
 #include "cli.hh"
 #include "cli_aov.hh"
+#include "cli_device.hh"
 #include "cli_explain.hh"
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
@@ -136,15 +137,6 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
   for (const std::string &text : texts) {
     print_message("gnomon: {}: {}\n", kind, text);
   }
-}
-
-std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
-{
-  const trace::Span span("device");
-  if (!options.has_picture()) {
-    return gpu::create_null_device();
-  }
-  return gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
 }
 
 struct ImportedScene {
@@ -283,9 +275,10 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
   const glm::ivec2 size_px = options.size_px();
-  const FrameSequence frames(options.frames, options.output);
+  FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
+  frames.choose_animations(scene);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
@@ -399,7 +392,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
   std::future<ImportedScene> import = start_import(scenes.front(), stops);
   std::unique_ptr<gpu::Device> device;
   try {
-    device = create_device(options);
+    device = create_device(options.backend);
     result.device = device->description();
     result.device_seconds = seconds_since(start);
   }
@@ -563,7 +556,8 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   const StopRequests stops;
   scene::Scene scene = start_import(options, stops).get().scene;
   MeasuredScene measured{scene_fingerprint(scene), {}};
-  const FrameSequence frames(options.frames, options.output);
+  FrameSequence frames(options.frames, options.output);
+  frames.choose_animations(scene);
   frames.pose(scene, frames.count() / 2);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   if (!device) {

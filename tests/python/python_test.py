@@ -318,6 +318,17 @@ class Pictures(unittest.TestCase):
         self.assertEqual((picture.shape, picture.dtype), ((18, 32, 4), numpy.float32))
         numpy.testing.assert_allclose(picture, numpy.broadcast_to((0.5, 0.25, 0.125, 1), picture.shape), rtol=1e-5)
 
+    def test_vulkan_draws_the_same_picture(self):
+        try:
+            vulkan = gnomon.Device(backend="vulkan")
+        except gnomon.DeviceError as error:
+            self.skipTest(str(error))
+        self.assertRegex(vulkan.description, r"^Vulkan 1\.")
+        pictures = [
+            gnomon.Renderer(device, square_scene(), (32, 18), **SMALL).render() for device in (self.device, vulkan)
+        ]
+        numpy.testing.assert_allclose(*pictures, rtol=1e-5)
+
     def test_multiple_scattering_makes_a_rough_metal_brighter(self):
         scene = square_scene()
         scene.materials[0].edit(metallic=1, roughness=1)
@@ -517,8 +528,8 @@ class Pictures(unittest.TestCase):
     def test_settings_are_those_of_the_program(self):
         """Each setting on which pictures depend, by its name, with the value that the program reports."""
         # Not of a renderer: display, import, and what changes no picture.
-        others = {"view_transform", "exposure", "variant", "texture_size_max", "is_timed", "layer_pass",
-                  "clustered_lamps_min"}
+        others = {"view_transform", "exposure", "variant", "texture_size_max", "lamp_units", "is_timed",
+                  "layer_pass", "clustered_lamps_min"}
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "report.json")
             for sample_count in (1, 2, 16):
@@ -544,7 +555,9 @@ class Pictures(unittest.TestCase):
                 gnomon.Renderer(self.device, square_scene(), (16, 8), **{name: wrong})
         scene = gnomon.load(PLAZA, texture_size_max=1)
         self.assertTrue(all(max(texture.texels.shape[:2]) == 1 for texture in scene.textures))
-        for wrong in ({"texture_size_max": -1}, {"texture_size_max": 2 ** 21}, {"texture_size": 4}):
+        power = {units: sum(lamp.intensity for lamp in gnomon.load(PLAZA, lamp_units=units).lamps) for units in ("lumen", "raw")}
+        self.assertAlmostEqual(power["raw"] / power["lumen"], 683, delta=1e-3)
+        for wrong in ({"texture_size_max": -1}, {"texture_size_max": 2 ** 21}, {"texture_size": 4}, {"lamp_units": "W"}):
             with self.assertRaises((gnomon.InvalidEdit, TypeError)):
                 gnomon.load(PLAZA, **wrong)
 
@@ -727,8 +740,9 @@ class Page(unittest.TestCase):
         # Only one device can exist at a time.
         with self.assertRaisesRegex(gnomon.DeviceError, "already current"):
             gnomon.Device()
+        with self.assertRaisesRegex(ValueError, "'metal' is none of auto, gl, vulkan"):
+            gnomon.Device("metal")
         names.clear()
-
 
     def check_data_set(self, names, line_counts):
         """Depth, normals and ids against the rays of a unit sphere at the origin and a floor at y = -1."""
