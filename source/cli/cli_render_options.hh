@@ -38,7 +38,7 @@ struct RenderOptions {
   std::string tile;
   FrameOptions frames;
   int repeat = 1;
-  /** What options set in the settings that offline_settings chooses for `samples`. */
+  /** The changes by options to the settings that offline_settings chooses for `samples`. */
   Changes<eevee::Settings> changes;
   bool redraws_shadows = false;
   std::string debug;

@@ -320,7 +320,7 @@ std::string unknown_stage(const std::string &file)
       endings);
 }
 
-/** What make and ninja read: \a target depends on \a files. */
+/** Write a file for make and ninja: \a target depends on \a files. */
 void write_depfile(const std::string &path, const std::string &target, const std::vector<std::string> &files)
 {
   const auto escaped = [](const std::string &file) {

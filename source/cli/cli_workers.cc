@@ -85,7 +85,7 @@ bool send_all(int socket, const void *data, std::size_t size)
     if (!send_all(socket, &head, sizeof(head)) || !send_all(socket, bytes.data(), bytes.size())) {
       break;
     }
-    // What a job without memory leaves behind is unknown.
+    // A job that ran out of memory leaves its process in an unknown state.
     if (head.is_failure) {
       break;
     }

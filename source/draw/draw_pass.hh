@@ -264,9 +264,10 @@ class Pass {
   gpu::State state_;
   ObjectBuffer *objects_;
   std::deque<ShadingGroup> groups_;
-  /** Of the last record for a view. Kept so that no record allocates memory, and that the same view is tested once. */
+  /** The visible objects of the last record for a view. Kept so that no record allocates memory, and that the same view
+   * is tested once. */
   mutable VisibleObjects visible_;
-  /** Nothing: in the order in which they were made. */
+  /** Empty: the order in which they were made. */
   std::optional<std::vector<std::uint32_t>> order_;
 };
 

@@ -34,7 +34,7 @@ namespace {
     case ENOMEM:
     case EMFILE:
     case ENFILE:
-    // Of folders on another machine.
+    // Errors of folders on another machine.
     case ESTALE:
     case ETIMEDOUT: throw TransientError(message);
     default: throw Error(message);

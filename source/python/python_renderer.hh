@@ -41,7 +41,7 @@ class Device {
   const pid_t process_ = ::getpid();
   std::unique_ptr<gpu::Device> device_;
   std::mutex mutex_;
-  /** What was left on other threads. */
+  /** Objects that were left on other threads. */
   std::vector<std::shared_ptr<void>> left_;
 };
 

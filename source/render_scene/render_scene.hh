@@ -166,9 +166,9 @@ class RenderScene {
     return meshes_.get(device_, scene_.meshes(), mesh, streams);
   }
   /** \see Images::get */
-  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, bool is_color)
+  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use)
   {
-    return images_.get(device_, scene_, texture, is_color);
+    return images_.get(device_, scene_, texture, use);
   }
   [[nodiscard]] const Meshes &meshes() const
   {
@@ -212,7 +212,7 @@ class RenderScene {
   bool is_origin_changed_ = true;
   /** set_host_batch or set_host_texture was called since the last update. */
   bool has_host_calls_ = false;
-  /** What the current update() has found. */
+  /** The changes that the current update() has found. */
   HostChanges host_batch_changes_;
   HostChanges host_texture_changes_;
   /** An object casts or receives shadows, and did not before, or the reverse. */

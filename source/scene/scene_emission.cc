@@ -61,7 +61,7 @@ class ImageCache {
     }
     const auto [found, is_new] = reduced_.try_emplace(handle);
     if (is_new) {
-      found->second = reduced(image, image_size_max, true);
+      found->second = reduced(image, image_size_max, ImageUse::Color);
     }
     return found->second;
   }
@@ -248,7 +248,7 @@ EmissionState emission_state(const Scene &scene)
       if (!mesh || !may_emit(scene.material_of(*mesh))) {
         continue;
       }
-      // What joins these objects has a new revision, and what leaves them changes their number.
+      // An object that joins has a new revision, and one that leaves changes the number of objects.
       state.object_count++;
       state.latest = std::max(
           {state.latest, nodes.revision(handle, Node::Aspect::Transform), nodes.revision(handle, Node::Aspect::Content),

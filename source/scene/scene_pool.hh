@@ -163,7 +163,7 @@ class Pool {
   static constexpr std::size_t aspect_count = std::size_t(Aspect::Count);
   struct Slot {
     T value;
-    /** Of the thing, or of the last thing if it was removed. */
+    /** The generation of the thing, or of the last one if it was removed. */
     std::uint32_t generation = 1;
     /** The largest that a thing of this slot had. */
     std::uint32_t last_generation = 1;

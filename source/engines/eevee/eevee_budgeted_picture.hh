@@ -116,7 +116,7 @@ class BudgetedPicture {
   BudgetController controller_;
   double begun_ = 0.0;
   double budget_ = 0.0;
-  /** Of the set-up that has begun. */
+  /** The time of the set-up that has begun. */
   double setup_seconds_ = 0.0;
   /** Created by the first preview; the viewport is destroyed first. */
   std::unique_ptr<Engine> preview_engine_;

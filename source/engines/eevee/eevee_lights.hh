@@ -36,7 +36,7 @@ struct ViewClusters {
   std::optional<Key> made;
   gpu::Buffer block;
   gpu::Texture texture;
-  /** Of `texture`. Programs read it by reference, because its size follows the view. */
+  /** The binding of `texture`. Programs read it by reference, because its size follows the view. */
   draw::TextureBinding binding;
 };
 

@@ -18,7 +18,7 @@
  */
 namespace gnomon::eevee {
 
-/** What a picture shows where there is no surface. */
+/** The part of a picture where there is no surface. */
 struct Background {
   enum class Kind {
     /** Transparent black. */

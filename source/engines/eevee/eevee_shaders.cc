@@ -134,7 +134,7 @@ gpu::SharedShader ShaderCache::make_with(std::uint64_t function_key, gpu::Device
     return [this, text](std::string_view path) { return path == surface_function_file ? text : files_(path); };
   };
   const gpu::ShaderFiles stand_in = files_with(files_("eevee/eevee_surface_stand_in.glsl"));
-  // Of another program with this function.
+  // The failure of another program with this function.
   std::string known = failure(function_key);
   if (const auto fault = surface_function_fault(function.text)) {
     known = fmt::format("{}:{}: {}", function.file, fault->line, fault->reason);

@@ -143,7 +143,7 @@ class JsonScanner {
     return ends_.empty() ? '\0' : ends_.back();
   }
 
-  /** What may stand at the place, for messages. */
+  /** The forms that may stand at the place, for messages. */
   [[nodiscard]] std::string wanted() const
   {
     const std::string end_text = std::string("'") + end() + "'";

@@ -52,7 +52,7 @@ int gl_minified(TextureFilter filter, MipFilter mip)
   return is_linear ? gl_linear_mipmap_linear : gl_nearest_mipmap_linear;
 }
 
-/** What glTF separates, and the importer multiplies. */
+/** Two factors that glTF separates, and the importer multiplies. */
 struct IorAndColor {
   /** Absent: glTF's default of 1.5. */
   std::optional<float> ior;
@@ -176,7 +176,9 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle, bool is_deformed)
   if (mesh.topology != scene::Topology::Triangles) {
     place->second.add("mode", std::to_string(mesh.topology == scene::Topology::Lines ? Model::Lines : Model::Points));
   }
-  place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
+  place->second.add("indices",
+                    std::to_string(buffer_.add_accessor(deformed ? rest_indices(mesh, *deformed) : mesh.indices,
+                                                        Model::UnsignedInt, "SCALAR")));
   if (scene_.materials().is_live(mesh.material)) {
     place->second.add("material", std::to_string(material(mesh.material)));
   }
