@@ -33,22 +33,25 @@ struct PlanOptions {
   int tile_count = 1;
 };
 
-/** The options of \a command that are no options of the pictures. */
-constexpr std::array<std::string_view, 9> plan_options = {"scene",      "--help",           "--plan",
-                                                          "--pictures", "--target-seconds", "--seconds-per-frame",
-                                                          "--tiles",    "--frames",         "--step"};
+/** Options of `gnomon render` that each part has of its own. */
+constexpr std::array<std::string_view, 3> part_options = {"scene", "--frames", "--step"};
 
-/** The options that were given, for `gnomon render`. */
+/** The options of \a command that were given and that all parts have in common, for `gnomon render`. */
 std::vector<std::string> arguments_of(const CLI::App &command)
 {
+  CLI::App render;
+  RenderOptions unused;
+  add_render_options(render, unused);
   std::vector<std::string> arguments;
   for (const CLI::Option *option : command.get_options()) {
-    if (option->count() == 0 || std::ranges::find(plan_options, option->get_name()) != plan_options.end()) {
+    const std::string name = option->get_name();
+    const bool is_of_render = render.get_option_no_throw(name) != nullptr;
+    if (option->count() == 0 || !is_of_render || std::ranges::find(part_options, name) != part_options.end()) {
       continue;
     }
     const bool is_flag = option->get_items_expected_max() == 0;
     // With an equals sign, because a value may begin with a dash.
-    arguments.push_back(is_flag ? option->get_name() : option->get_name() + "=" + option->results().front());
+    arguments.push_back(is_flag ? name : name + "=" + option->results().front());
   }
   return arguments;
 }
