@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Parts of plans, early ends, statuses for schedulers, and several scenes in one process.
+#include "cli_moving_scene.hh"
 #include "cli_process.hh"
-#include "gltf/gltf_builder.hh"
 #include "gpu_device_fixture.hh"
 
 #include <nlohmann/json.hpp>
@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using test::Finished;
-using test::Float32;
 
 class FarmTest : public test::ProgramTest {
  protected:
@@ -28,17 +27,7 @@ class FarmTest : public test::ProgramTest {
     if (!test::testing_gl_device()) {
       GTEST_SKIP() << "no device to render with";
     }
-    test::GltfBuilder builder = test::triangle_scene();
-    builder.document["nodes"][0]["scale"] = {20, 20, 1};
-    builder.document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
-    builder.node({{"camera", 0}, {"translation", {5, 5, 3}}});
-    builder.light({{"type", "directional"}, {"intensity", 2000.0}});
-    const int input = builder.accessor(std::vector<float>{0, 1}, Float32, "SCALAR");
-    const int output = builder.accessor(std::vector<float>{0, 0, 0, 10, 3, 0}, Float32, "VEC3");
-    builder.document["animations"] = {
-        {{"samplers", {{{"input", input}, {"output", output}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
-    write("moving.gltf", builder.gltf());
+    write("moving.gltf", test::moving_triangle_gltf({10, 3, 0}));
   }
 
   [[nodiscard]] std::vector<float> values_of(const std::string &name) const

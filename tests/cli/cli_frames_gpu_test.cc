@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `gnomon render --frames`.
+#include "cli_moving_scene.hh"
 #include "cli_process.hh"
-#include "gltf/gltf_builder.hh"
 #include "gpu_device_fixture.hh"
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,6 @@ namespace gnomon {
 namespace {
 
 using test::Finished;
-using test::Float32;
 
 class FramesTest : public test::ProgramTest {
  protected:
@@ -27,19 +26,8 @@ class FramesTest : public test::ProgramTest {
     if (!test::testing_gl_device()) {
       GTEST_SKIP() << "no device to render with";
     }
-    // A triangle that fills the picture at 0 s, and has left it at 1 s.
-    test::GltfBuilder builder = test::triangle_scene();
-    builder.document["nodes"][0]["scale"] = {20, 20, 1};
-    builder.document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
-    builder.node({{"camera", 0}, {"translation", {5, 5, 3}}});
-    builder.light({{"type", "directional"}, {"intensity", 2000.0}});
-    const int input = builder.accessor(std::vector<float>{0, 1}, Float32, "SCALAR");
-    const int output = builder.accessor(std::vector<float>{0, 0, 0, 100, 0, 0}, Float32, "VEC3");
-    builder.document["animations"] = {
-        {{"name", "leave"},
-         {"samplers", {{{"input", input}, {"output", output}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
-    write("moving.gltf", builder.gltf());
+    // It has left the picture at 1 s.
+    write("moving.gltf", test::moving_triangle_gltf({100, 0, 0}));
   }
 
   [[nodiscard]] float brightest(const std::string &name) const
