@@ -51,7 +51,7 @@ class Aov {
   std::vector<std::string> names_;
 };
 
-/** For `--help`. */
+/** Names of the layers, for `--help`. */
 [[nodiscard]] std::string aov_names();
 
 }  // namespace gnomon::cli

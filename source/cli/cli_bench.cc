@@ -260,7 +260,7 @@ void check_files(const BenchOptions &options)
   roles.add_output(options.json, "--json");
 }
 
-/** \a text: what each backend does. */
+/** \a text: description of each backend. */
 void add_backend(CLI::App &bench, BenchOptions &options, const char *text)
 {
   bench.add_option("--backend", options.backend, text)->capture_default_str()->check(CLI::IsMember({"gl", "null"}));

@@ -17,7 +17,7 @@ namespace {
 /** Bytes of content on the device after the first sample of a picture. */
 struct DeviceBytes {
   std::size_t all = 0;
-  /** Of the layers of shadows. */
+  /** Bytes of the layers of shadows. */
   std::size_t shadows = 0;
 };
 

@@ -55,7 +55,7 @@ static void open_standard_streams()
   }
 }
 
-/** \return \a status, or Status::Failed if what was printed did not get to stdout */
+/** \return \a status, or Status::Failed if the printed text could not be written to stdout */
 static Status finish_output(Status status)
 {
   errno = 0;

@@ -27,7 +27,7 @@ class Progress {
   bool is_terminal_;
   int picture_count_;
   int sample_count_;
-  /** Of the last line, tenths of a percent; negative: none. */
+  /** The progress in the last line, tenths of a percent; negative: none. */
   std::int64_t shown_ = -1;
 };
 

@@ -35,7 +35,7 @@ constexpr const char *checkpoint_sentence =
 
 std::vector<Exclusion> exclusions()
 {
-  // What they choose, and what changes a picture so that its error cannot be measured.
+  // Options that they choose themselves, and options that change a picture so that its error cannot be measured.
   std::vector<std::string> chosen = {"--samples",    "--time-limit", "--debug",        "--frames",
                                      "--background", "--tile",       "--sample-range", "--aov"};
   eevee::ShadowSettings::for_each_property([&](const auto &row) {

@@ -20,7 +20,7 @@ namespace gnomon::cli {
 
 /** Options of `gnomon render`. Texts are checked by CLI11 or by check(). */
 struct RenderOptions {
-  /** Those of the command line; the others are of one of them. */
+  /** The scenes of the command line. The other members describe one of them. */
   std::vector<std::string> scenes;
   std::string scene;
   std::string output;
@@ -38,7 +38,7 @@ struct RenderOptions {
   std::string tile;
   FrameOptions frames;
   int repeat = 1;
-  /** What options set in the settings that offline_settings chooses for `samples`. */
+  /** The changes by options to the settings that offline_settings chooses for `samples`. */
   Changes<eevee::Settings> changes;
   bool redraws_shadows = false;
   std::string debug;

@@ -10,12 +10,12 @@ namespace gnomon::cli {
 
 /** A rendered picture, or a part of it, with the values that are written beside it. Rows from the bottom. */
 struct RenderedPicture {
-  /** Of the values that follow. */
+  /** The size of the arrays that follow. */
   glm::ivec2 size_px{0};
   std::vector<glm::vec4> pixels{};
   /** Display-referred RGBA bytes of a PNG; empty: made from pixels. */
   std::vector<std::uint8_t> display{};
-  /** Of --debug density; empty otherwise. */
+  /** The values of --debug density; empty without it. */
   std::vector<float> density{};
   Alpha alpha = Alpha::Dropped;
   AovLayers aov{};

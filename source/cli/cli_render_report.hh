@@ -13,7 +13,7 @@ namespace gnomon::cli {
 /** Measurements for the printed summary and for --json. */
 struct RenderResult {
   std::string device;
-  /** Of the last picture. */
+  /** The number of samples of the last picture. */
   int samples_drawn = 0;
   double import_seconds = 0.0;
   double device_seconds = 0.0;
@@ -23,7 +23,7 @@ struct RenderResult {
   std::vector<eevee::ShadowCounters> frame_shadows;
   /** Number of frames that --resume skipped. */
   int skipped_frame_count = 0;
-  /** Of the layers of --aov. */
+  /** The time of the layers of --aov. */
   double layer_seconds = 0.0;
   double output_seconds = 0.0;
   double total_seconds = 0.0;

@@ -45,7 +45,7 @@ template <typename Value>
   }
 }
 
-/** What texts of values an option takes: "INT", "FLOAT" or "TEXT". */
+/** The kind of text that an option takes: "INT", "FLOAT" or "TEXT". */
 template <typename Value>
 inline constexpr const char *type_text = is_integer<Value>                 ? "INT"
                                          : std::is_floating_point_v<Value> ? "FLOAT"
@@ -108,7 +108,7 @@ template <typename Value>
   }
 }
 
-/** What the options that were given change in settings of type T. */
+/** The changes of settings of type T by the options that were given. */
 template <typename T>
 using Changes = std::vector<std::function<void(T &)>>;
 

@@ -73,7 +73,7 @@ std::string hash_of(std::string_view text)
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-/** Results by what they depend on. */
+/** Results by the inputs that they depend on. */
 class Cache {
  public:
   Cache(fs::path folder, const gpu::ShaderFiles &files) : folder_(std::move(folder)), files_(files) {}

@@ -40,7 +40,7 @@ struct Variant {
   gpu::ShaderInterface interface;
 };
 
-/** Of all engines; variants of one program follow each other. */
+/** The variants of all engines; variants of one program follow each other. */
 [[nodiscard]] std::vector<Variant> engine_variants();
 /** The C++ layouts of the blocks of all engines. */
 [[nodiscard]] const std::vector<gpu::BlockLayout> &engine_blocks();

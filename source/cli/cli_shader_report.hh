@@ -11,7 +11,7 @@ struct ShaderReport {
   std::size_t program_count = 0;
   std::size_t variant_count = 0;
   std::vector<shader_check::CheckTarget> targets;
-  /** Of programs whose target follows from their files. */
+  /** The target of a program, where it follows from the program's files. */
   struct Choice {
     std::string program;
     shader_check::CheckTarget target;

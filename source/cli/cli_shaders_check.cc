@@ -320,7 +320,7 @@ std::string unknown_stage(const std::string &file)
       endings);
 }
 
-/** What make and ninja read: \a target depends on \a files. */
+/** Write a file for make and ninja: \a target depends on \a files. */
 void write_depfile(const std::string &path, const std::string &target, const std::vector<std::string> &files)
 {
   const auto escaped = [](const std::string &file) {
@@ -349,7 +349,7 @@ fs::path output_path(const CheckArguments &arguments, const std::string &file)
                                      : fs::path(arguments.output);
 }
 
-/** \throws output::Conflict where an output would replace what is read, or another output */
+/** \throws output::Conflict if an output would replace an input or another output */
 void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
 {
   output::Roles roles;
@@ -386,7 +386,7 @@ void write_output(const std::vector<ShaderManifest::Entry> &entries,
 }
 
 /**
- * The programs of FILES: files whose names differ only in the stage belong to one. \a others gets what is said about
+ * The programs of FILES: files whose names differ only in the stage belong to one. \a others gets the messages about
  * files that are no stages.
  */
 ShaderManifest programs_of_files(const CheckArguments &arguments, ShaderReport &others)
@@ -452,7 +452,7 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   std::ranges::copy(project.include_folders, std::back_inserter(options.include_folders));
   options.features = project.features;
   std::ranges::copy(arguments.features, std::back_inserter(options.features));
-  // Those of the command line are last and win.
+  // The levels of the command line are read last and take precedence.
   read_levels(project.levels, options.levels, options.is_strict);
   read_levels(arguments.levels, options.levels, options.is_strict);
   std::vector<ShaderJob> jobs;

@@ -68,9 +68,9 @@ struct WorkPlan {
 
 /** Times of a scene's pictures. */
 struct PictureCost {
-  /** Of a process before its first picture, s. */
+  /** Time of a process before its first picture, s. */
   double start_seconds = 0.0;
-  /** Of one sample of a whole picture, s; more than 0. */
+  /** Time of one sample of a whole picture, s; more than 0. */
   double sample_seconds = 0.0;
 };
 

@@ -85,7 +85,7 @@ bool send_all(int socket, const void *data, std::size_t size)
     if (!send_all(socket, &head, sizeof(head)) || !send_all(socket, bytes.data(), bytes.size())) {
       break;
     }
-    // What a job without memory leaves behind is unknown.
+    // A job that ran out of memory leaves its process in an unknown state.
     if (head.is_failure) {
       break;
     }
@@ -102,7 +102,7 @@ class Worker {
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) {
       throw std::system_error(errno, std::generic_category(), "a process for checks cannot be started");
     }
-    // Otherwise both processes would write what is buffered.
+    // Flush first, otherwise both processes would write the buffered text.
     std::fflush(nullptr);
     process_ = fork();
     if (process_ < 0) {
@@ -167,7 +167,7 @@ class Worker {
   {
     job_.reset();
   }
-  /** Reads what there is. \return the result once it is whole */
+  /** Read the available bytes. \return the result once it is complete */
   std::optional<WorkResult> read()
   {
     char buffer[65536];

@@ -10,14 +10,14 @@
 namespace gnomon::cli {
 
 struct WorkLimits {
-  /** Of wall time for one job. */
+  /** Most wall time for one job. */
   double seconds = 60.0;
-  /** Of memory that a process may write. */
+  /** Most memory that a process may write. */
   std::size_t memory_bytes = std::size_t(3) << 30U;
 };
 
 struct WorkResult {
-  /** What the job returned. */
+  /** The result of the job. */
   std::string bytes;
   /** Why it returned nothing: a clause; empty: it returned. */
   std::string failure;

@@ -111,7 +111,7 @@ class ShadingGroup {
    * object has at that time.
    */
   void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
-  /** The same, of Batch::range(). */
+  /** The same for a range of a batch, from Batch::range(). */
   void call(const gpu::BatchRange &batch, ObjectIndex object);
   /**
    * Draw the batch once. Pass::record culls the call with \a volume instead of the object's volume, unless the radius
@@ -143,7 +143,7 @@ class ShadingGroup {
     /** nullptr: the value is in constant_bytes_. */
     const void *reference = nullptr;
   };
-  /** As small as possible, because the time of a record is that of reading the calls. */
+  /** Kept as small as possible, because reading the calls takes most of the time of a record. */
   struct Call {
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
@@ -264,9 +264,10 @@ class Pass {
   gpu::State state_;
   ObjectBuffer *objects_;
   std::deque<ShadingGroup> groups_;
-  /** Of the last record for a view. Kept so that no record allocates memory, and that the same view is tested once. */
+  /** The visible objects of the last record for a view. Kept so that no record allocates memory, and that the same view
+   * is tested once. */
   mutable VisibleObjects visible_;
-  /** Nothing: in the order in which they were made. */
+  /** Empty: the order in which they were made. */
   std::optional<std::vector<std::uint32_t>> order_;
 };
 

@@ -24,7 +24,7 @@ struct EngineViewportData {
 
 /** The part of a sample that one call of Engine::draw_scene draws. \see Viewport::set_rows_max */
 struct SamplePart {
-  /** The first part of the sample draws what the others need: depth and shadows. */
+  /** The first part of the sample draws depth and shadows, which the others need. */
   bool is_first = true;
   /** With its rows, the sample is whole. */
   bool is_last = true;

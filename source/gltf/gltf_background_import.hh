@@ -61,7 +61,7 @@ class BackgroundImport {
   std::atomic<float> progress_ = 0.0F;
   std::atomic<bool> is_cancelled_ = false;
   std::atomic<bool> is_done_ = false;
-  /** Of the import's thread, until it is joined. */
+  /** The import's thread owns these until it is joined. */
   std::optional<scene::Scene> scene_;
   std::exception_ptr error_;
   std::thread thread_;

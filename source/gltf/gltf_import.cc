@@ -162,7 +162,7 @@ class Importer {
   void visit_nodes(const std::vector<int> &roots)
   {
     struct Siblings {
-      /** Those that are not visited yet. */
+      /** Nodes that are not visited yet. */
       std::span<const int> nodes;
       /** Invalid for roots, and below a node that was left out. */
       Handle<Node> parent;

@@ -75,7 +75,7 @@ inline constexpr std::uint32_t host_stride_bytes_max = 2048;
 struct HostStream {
   /** OpenGL name of the buffer; 0: there is no such stream. */
   std::uint32_t buffer = 0;
-  /** Of the first vertex, and from one vertex to the next; the stride is not 0. */
+  /** The offset of the first vertex, and the stride from one vertex to the next, which is not 0. */
   std::uint32_t offset_bytes = 0;
   std::uint32_t stride_bytes = 0;
   VertexType type = VertexType::Float;
@@ -110,7 +110,7 @@ struct HostBatch {
   enum class IndexType : std::uint8_t { Uint16, Uint32 } index_type = IndexType::Uint32;
 
   [[nodiscard]] const HostStream &stream(VertexStream stream) const;
-  /** Of one index. */
+  /** The size of one index. */
   [[nodiscard]] std::uint32_t index_size_bytes() const
   {
     return index_type == IndexType::Uint16 ? 2 : 4;

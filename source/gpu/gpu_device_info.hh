@@ -28,7 +28,7 @@ struct Limits {
   bool is_software = false;
   /** Alignment in bytes of BufferRange::offset_bytes, for uniform and storage blocks. */
   std::uint32_t uniform_offset_alignment = 256;
-  /** Maximum numbers of what one stage of a program reads. */
+  /** Maximum numbers of resources that one stage of a program reads. */
   struct Stage {
     /** OpenGL guarantees 8 in the fragment stage and 0 in the others. */
     int storage_block_max = 8;

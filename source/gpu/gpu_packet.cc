@@ -278,7 +278,7 @@ void Device::release(ResourceKind kind, ResourceId id)
   if (const auto *range = std::get_if<BatchRange>(&slot_of(kind, id).info.desc); range && range->host_batch == 0) {
     return;
   }
-  // Destructors call this function, which must not throw. What cannot be destroyed now is destroyed by a later call.
+  // Destructors call this function, which must not throw. A later call destroys resources that cannot be destroyed now.
   const bool is_idle = done_serial_ == serial_ && std::this_thread::get_id() == thread_ && can_execute();
   if (recording_) {
     recording_->operations_.push_back({Operation::Destroy{{kind, id}}});

@@ -50,7 +50,7 @@ constexpr bool has(State mask, State bit)
   return (std::uint32_t(mask) & std::uint32_t(bit)) != 0;
 }
 
-/** Number of indices or vertices of what is drawn. */
+/** Number of indices or vertices of a primitive. */
 constexpr std::uint32_t primitive_size(State mask)
 {
   return has(mask, State::DrawPoints) ? 1 : has(mask, State::DrawLines) ? 2 : 3;

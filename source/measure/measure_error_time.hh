@@ -26,7 +26,7 @@ class Cancelled : public std::runtime_error {
   Cancelled() : std::runtime_error("the measurement was cancelled") {}
 };
 
-/** What a measurement tells its host while it runs. Both are called by one thread at a time, which may be any. */
+/** The calls of a running measurement to its host. Both are called by one thread at a time, which may be any. */
 struct ErrorTimeHost {
   /** With the part that is done, in [0, 1], after each traced pixel and each sample. Returns false to cancel. */
   std::function<bool(double share_done)> progress{};

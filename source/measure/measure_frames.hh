@@ -30,7 +30,7 @@ struct BudgetTimes {
   std::vector<double> moved_camera;
   /** A still picture is refined within the budget: without the first frame after the camera has moved. */
   std::vector<double> refined;
-  /** What frame_count calls have done after the picture was complete, without a target. */
+  /** The counters of frame_count calls after the picture was complete, without a target. */
   gpu::Counters still;
   /** RMS of red, green and blue of that picture, and of their differences to a picture drawn without a budget. */
   double picture_rms = 0.0;

@@ -26,7 +26,7 @@ constexpr std::array<double, 4> elevations = {90.0, 60.0, 30.0, 5.0};
 constexpr std::array<double, 3> azimuths = {180.0, 90.0, 0.0};
 /** Half the longer axis, or the radius, metres. */
 constexpr std::array<double, 3> sizes = {0.1, 0.5, 2.0};
-/** Of the lamp's centre, metres. */
+/** Distances of the lamp's centre, metres. */
 constexpr std::array<double, 3> distances = {0.5, 2.0, 8.0};
 constexpr std::array<std::pair<LampOutline, const char *>, 3> outlines = {
     {{LampOutline::Round, "round"}, {LampOutline::Rectangle, "rectangle"}, {LampOutline::Ellipse, "ellipse"}}};
@@ -46,7 +46,7 @@ struct LightCase {
   double whole = 0.0;
   double multi = 0.0;
   double point = 0.0;
-  /** What an error is relative to. */
+  /** The value that an error is relative to. */
   double scale = 0.0;
 
   [[nodiscard]] bool is_diffuse() const

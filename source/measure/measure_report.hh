@@ -67,7 +67,7 @@ struct RunReport {
   glm::ivec2 size_px{0};
   int rounds = 0;
   int reference_samples = 0;
-  /** Of pictures and references. \see eevee::Settings */
+  /** The setting of pictures and references. \see eevee::Settings */
   bool has_multiscatter = false;
   /** Wall time spent so far. */
   double seconds = 0.0;

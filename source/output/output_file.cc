@@ -34,7 +34,7 @@ namespace {
     case ENOMEM:
     case EMFILE:
     case ENFILE:
-    // Of folders on another machine.
+    // Errors of folders on another machine.
     case ESTALE:
     case ETIMEDOUT: throw TransientError(message);
     default: throw Error(message);
@@ -71,7 +71,7 @@ class BlockedSignals {
   BlockedSignals &operator=(const BlockedSignals &) = delete;
 
  private:
-  /** Those that were not pending before. */
+  /** Signals that were not pending before. */
   sigset_t signals_{};
   sigset_t mask_before_{};
 };
@@ -111,7 +111,7 @@ struct Place {
   {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
   }
-  /** Whether a file with a new content takes the place; otherwise, the content is written to what is there. */
+  /** Whether a file with a new content takes the place; otherwise, the content is written to the existing file. */
   [[nodiscard]] bool is_replaced() const
   {
     return descriptor < 0 && (!status || S_ISREG(status->st_mode));

@@ -47,9 +47,9 @@ class Stream {
   }
   /** 0 if it is unknown, which check() reports: destructors of writers ask for it. */
   [[nodiscard]] std::uint64_t position();
-  /** Continues at \a position, which may be before the end: what is there is written over. \throws Error, as write */
+  /** Continue at \a position. If it is before the end, the following bytes are overwritten. \throws Error, as write */
   void seek(std::uint64_t position);
-  /** For writers in which an exception was lost. \throws Error if a call failed */
+  /** Report an earlier failure, for writers that lose exceptions. \throws Error if a call has failed */
   void check() const;
 
  private:

@@ -86,7 +86,7 @@ struct Field {
 template <typename T>
 using Fields = std::vector<Field<T>>;
 
-/** What a value in Python must be to be converted to a Value. */
+/** The form of a value in Python that can be converted to a Value. */
 template <typename Value>
 [[nodiscard]] std::string form_of()
 {

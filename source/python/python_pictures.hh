@@ -15,7 +15,7 @@ namespace gnomon::python {
  */
 void add_tangents(scene::Mesh &mesh);
 
-/** Adds Texture, and what a Scene has of textures and its world. */
+/** Adds Texture, and the members of Scene for textures and the world. */
 void define_pictures(py::module_ &module, SceneClass &type);
 
 }  // namespace gnomon::python

@@ -41,7 +41,7 @@ class Device {
   const pid_t process_ = ::getpid();
   std::unique_ptr<gpu::Device> device_;
   std::mutex mutex_;
-  /** What was left on other threads. */
+  /** Objects that were left on other threads. */
   std::vector<std::shared_ptr<void>> left_;
 };
 
@@ -62,7 +62,7 @@ struct LayerRequest {
   bool has_world = false;
 };
 
-/** Rows from the bottom. What was not asked for is empty. */
+/** Rows from the bottom. Layers that were not requested are empty. */
 struct Layers {
   std::vector<glm::vec4> picture;
   eevee::SurfaceLayers surfaces;

@@ -124,7 +124,7 @@ const Fields<Node> node_fields = [] {
   return fields;
 }();
 
-/** Checks and sets what depends on several fields. \a values: those that were set */
+/** Check and set members that depend on several fields. \a values: the fields that were set */
 template <typename T>
 void finish(T & /*value*/, const py::dict & /*values*/)
 {
@@ -225,7 +225,7 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
   return {scene, scene->edited().add(std::move(mesh))};
 }
 
-/** \a progress: called with the part that is done; what it raises, and signals, end the import. */
+/** \a progress: called with the completed fraction. An exception that it raises, or a signal, ends the import. */
 ScenePtr load(const std::filesystem::path &path, const std::string &variant, const py::object &progress,
               const std::optional<std::filesystem::path> &only_below, const py::kwargs &values)
 {

@@ -129,7 +129,7 @@ struct Renderer {
   const Tracer &tracer;
   CameraRays rays;
   const DirectLightSettings &settings;
-  /** Nothing: the scene has no world, or it is black. */
+  /** Empty: the scene has no world, or a black one. */
   std::optional<WorldSampler> world;
   scene::EmissiveSurfaces emission;
 

@@ -11,7 +11,7 @@ namespace gnomon::reference {
 struct LobeIntegrals {
   /** 1 - the integral, for Fresnel terms of 1. */
   double missing = 0.0;
-  /** Of the lobe times Schlick's fifth power. */
+  /** The value of the lobe times Schlick's fifth power. */
   double schlick = 0.0;
 };
 

@@ -21,7 +21,7 @@ namespace gnomon::reference {
 /** Points origin + t · direction with t in [t_min, t_max]. World space, metres. */
 struct Ray {
   glm::dvec3 origin_ws{0.0};
-  /** Of any length; t is in units of this length. A ray with a zero direction hits nothing. */
+  /** The direction may have any length; t is in units of this length. A ray with a zero direction hits nothing. */
   glm::dvec3 direction_ws{0.0};
   double t_min = 0.0;
   double t_max = std::numeric_limits<double>::infinity();
@@ -135,8 +135,8 @@ class Tracer {
 };
 
 /**
- * What the tracer leaves out of visible meshes: one line for each material of triangles that has layers, transmits
- * light or has a surface function, and one for each mesh of lines or points.
+ * The parts of visible meshes that the tracer leaves out: one line for each material of triangles that has layers,
+ * transmits light or has a surface function, and one for each mesh of lines or points.
  */
 [[nodiscard]] std::vector<std::string> untraced_parts(const scene::Scene &scene);
 

@@ -66,7 +66,7 @@ class Meshes {
     gpu::Batch batch;
     scene::Handle<scene::Mesh> handle;
     scene::Revision shape = 0;
-    /** Of `host_batches_`; 0: the mesh was uploaded. */
+    /** The number in `host_batches_`; 0: the mesh was uploaded. */
     std::uint64_t host_resource = 0;
     MeshStreams streams = MeshStreams::Shape;
   };

@@ -212,7 +212,7 @@ class RenderScene {
   bool is_origin_changed_ = true;
   /** set_host_batch or set_host_texture was called since the last update. */
   bool has_host_calls_ = false;
-  /** What the current update() has found. */
+  /** The changes that the current update() has found. */
   HostChanges host_batch_changes_;
   HostChanges host_texture_changes_;
   /** An object casts or receives shadows, and did not before, or the reverse. */

@@ -132,7 +132,7 @@ struct Emitter {
   {
     return material.alpha_mode != AlphaMode::Opaque && (coverage.has_image() || !mesh.colors.empty());
   }
-  /** Longest edge of triangle \a first on the images of what varies over it, in images. */
+  /** Longest edge of triangle \a first on the textures that vary over it, in texture coordinates. */
   [[nodiscard]] double uv_edge(std::size_t first) const
   {
     double longest = 0.0;
@@ -248,7 +248,7 @@ EmissionState emission_state(const Scene &scene)
       if (!mesh || !may_emit(scene.material_of(*mesh))) {
         continue;
       }
-      // What joins these objects has a new revision, and what leaves them changes their number.
+      // An object that joins has a new revision, and one that leaves changes the number of objects.
       state.object_count++;
       state.latest = std::max(
           {state.latest, nodes.revision(handle, Node::Aspect::Transform), nodes.revision(handle, Node::Aspect::Content),

@@ -163,9 +163,9 @@ class Pool {
   static constexpr std::size_t aspect_count = std::size_t(Aspect::Count);
   struct Slot {
     T value;
-    /** Of the thing, or of the last thing if it was removed. */
+    /** The generation of the thing, or of the last one if it was removed. */
     std::uint32_t generation = 1;
-    /** The largest that a thing of this slot had. */
+    /** The largest generation that this slot has had. */
     std::uint32_t last_generation = 1;
     bool is_live = true;
     std::array<Revision, aspect_count> revisions{};
@@ -203,7 +203,7 @@ class Pool {
   /** \pre is_restorable(handle) */
   void restore(Handle<T> handle, T value, Revision revision)
   {
-    // Undo restores what was removed last.
+    // Search from the end: undo restores the last removed thing.
     removed_.erase(std::prev(std::find(removed_.rbegin(), removed_.rend(), handle.index).base()));
     fill(handle, std::move(value), revision);
   }

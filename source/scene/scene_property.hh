@@ -24,9 +24,10 @@ template <typename... Values>
   return ((1U << unsigned(values)) | ...);
 }
 
-/** What a property means and which values it may have. Members that are left out have no meaning for the property. */
+/** The meaning of a property and the values that it may have. Members that are left out have no meaning for the
+ * property. */
 struct Description {
-  /** Of the member; in messages and in Python. */
+  /** The member's name, in messages and in Python. */
   std::string_view name;
   /** In scripts of the window and, after a prefix, in extras of files. Empty: as `name`. */
   std::string_view key{};

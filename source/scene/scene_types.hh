@@ -104,8 +104,8 @@ struct SurfaceFunction {
 };
 
 /**
- * What the indices of a mesh connect. Points and lines are a pixel wide in every picture, cast no shadow and are not
- * seen by the reference; a material's sides have no effect on them.
+ * The primitives that the indices of a mesh form. Points and lines are a pixel wide in every picture, cast no shadow
+ * and are not seen by the reference; a material's sides have no effect on them.
  */
 enum class Topology { Triangles, Lines, Points };
 

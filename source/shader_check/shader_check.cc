@@ -136,7 +136,7 @@ constexpr std::array<CheckRule, 19> rules = {{
     {"unguarded-math", "the argument of a function with a limited domain is guarded", true},
 }};
 
-/** What a Checker checks for. */
+/** The settings of a Checker. */
 struct CheckSettings {
   CheckOptions options;
   /** Whether the shaders are Gnomon's, to which rules with CheckRule::is_own apply. */

@@ -9,7 +9,7 @@
 
 namespace gnomon::shader_check {
 
-/** What a shader is compiled for. */
+/** The target that a shader is compiled for. */
 enum class CheckTarget : std::uint8_t {
   /** GLSL as a driver of OpenGL compiles it, 1.10 to 4.60. */
   OpenGl,

@@ -12,7 +12,7 @@ namespace gnomon::view {
 
 void run(const Options &options)
 {
-  // Before a window opens for nothing.
+  // Read the script first: no window opens if it is invalid.
   std::optional<Script> script;
   if (!options.script.empty()) {
     script.emplace(options.script);
@@ -25,7 +25,7 @@ void run(const Options &options)
   bool is_laid_out = false;
   bool has_begun_script = false;
   while (!app.is_closed()) {
-    // The first command may need the scene.
+    // Wait for the scene: the first command may need it.
     if (script && (has_begun_script || !app.is_opening())) {
       has_begun_script = true;
       script->step(app);

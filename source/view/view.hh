@@ -10,10 +10,13 @@
 #include <functional>
 #include <span>
 
-/** A window on a scene: looks at it, edits it and saves it. doc/view.md describes it. */
+/** The interactive window, which views, edits and saves one scene. doc/view.md describes it. */
 namespace gnomon::view {
 
-/** Write an image file, or throw std::runtime_error naming it. Rows from the bottom, four channels. */
+/**
+ * Functions that write an image file. They throw std::runtime_error, which names the file. Pixels have four channels;
+ * the first row is the bottom one.
+ */
 struct ImageWriters {
   std::function<void(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba)> png;
   /** Scene-linear radiance. */
@@ -21,19 +24,25 @@ struct ImageWriters {
 };
 
 struct Options {
-  /** Empty: nothing is open at first. */
+  /** Scene file to open at start. Empty: none. */
   std::filesystem::path scene{};
-  /** Commands to run; empty: a person uses the window. */
+  /** File with commands to run. Empty: the window is used interactively. */
   std::filesystem::path script{};
-  /** Written when all viewports are complete, after the script; then the program ends. Empty: none. */
+  /**
+   * Picture file of the window, written once the script has ended and all viewports are complete; the program then
+   * ends. Empty: none.
+   */
   std::filesystem::path screenshot{};
-  /** A folder as the repository's `shaders`, whose files may be edited meanwhile. Empty: those of the build. */
+  /**
+   * Folder with the layout of the repository's `shaders`; its files are compiled again when they change. Empty: the
+   * shaders of the build.
+   */
   std::filesystem::path shaders{};
-  /** Of all scenes that are opened: gltf::ImportOptions::only_below. */
+  /** gltf::ImportOptions::only_below of all scenes that are opened. */
   std::filesystem::path only_below{};
   glm::ivec2 size_px{1440, 860};
   ImageWriters writers{};
-  /** Reads the picture of a world. */
+  /** Function that reads the picture of a world. */
   gltf::ReadPicture read_picture{};
 };
 

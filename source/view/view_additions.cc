@@ -103,7 +103,7 @@ void fill_mesh(Scene &scene, Node &node)
   node.meshes = {scene.add(std::move(mesh))};
 }
 
-/** As bright as lamps of their kind commonly are a few metres from what they light. */
+/** Radiant power suits a distance of a few metres between lamp and objects. */
 template <LampKind Kind>
 void fill_lamp(Scene &scene, Node &node)
 {

@@ -16,13 +16,13 @@ namespace gnomon::view {
 
 namespace {
 
-/** After an event, until the user interface has its final layout. */
+/** Number of frames after an event until the user interface has its final layout. */
 constexpr int settling_frames = 3;
-/** To make a new context after one was lost. */
+/** Number of attempts to create a context after a loss, and the pause between them. */
 constexpr int context_attempts = 5;
 constexpr std::chrono::milliseconds context_pause{500};
 
-/** Whether it is named as a picture that lights scenes. */
+/** Whether the file extension is that of a world picture. */
 bool is_picture(const std::filesystem::path &path)
 {
   std::string suffix = path.extension().string();
@@ -142,7 +142,7 @@ bool App::set_world_picture(const std::filesystem::path &path)
     message("No scene is open", false);
     return false;
   }
-  // A transform that goes on would undo the picture with itself.
+  // Reverting a running transform would also undo the change of the picture.
   end_transform(true);
   document_->history().end_gesture();
   try {
@@ -217,7 +217,7 @@ void App::finish_measurement()
     message(cancelled.what(), false);
   }
   catch (const std::exception &error) {
-    // Not App::report: a context that was lost was not the window's.
+    // App::report is not used: the measurement's context was lost, not the window's.
     message(error.what(), true);
   }
 }
@@ -325,7 +325,7 @@ void App::update_shaders()
   for (const std::string &failure : failures) {
     message(failure, true);
   }
-  // A scene that was opened, or a context that was made anew, takes the same shaders again: no news.
+  // No message when the same shaders are loaded again, for a new scene or a new context.
   if (failures.empty() && has_changed) {
     message(fmt::format("The shaders of {} are loaded", shader_watch_->folder().string()), false);
   }
@@ -392,7 +392,7 @@ void App::leave(std::function<void()> action)
     action();
     return;
   }
-  // They have the pointer, which the question needs.
+  // Both capture the pointer, which the dialog needs.
   end_fly(true);
   end_transform(true);
   leaving_ = std::move(action);
@@ -416,7 +416,7 @@ void App::ask_save(std::function<void()> then)
   if (!document_) {
     return;
   }
-  // The file that was opened is not replaced by chance: the export leaves out what the import did not take.
+  // The default path is not the opened file: an export lacks the parts that the import left out.
   ask("Save as glTF", default_path(".edited.glb"), [this, then = std::move(then)](const std::string &path) {
     if (save(path) && then) {
       then();
@@ -507,7 +507,7 @@ void App::update_document()
 
 void App::draw_frame(bool may_wait)
 {
-  // Frames take time from a measurement. A script that awaits one therefore waits, too.
+  // Drawing slows a running measurement down. Therefore the window also waits for events when a script runs.
   const bool waits = (may_wait || error_panel_.is_measuring()) && is_complete_ && frames_to_draw_ == 0;
   constexpr double progress_seconds = 0.05;
   constexpr double measurement_seconds = 0.5;

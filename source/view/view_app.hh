@@ -17,42 +17,47 @@
 
 namespace gnomon::view {
 
-/** A line for the user. */
+/** A message to the user, shown in the status line. */
 struct Message {
   std::string text;
   bool is_error = false;
 };
 
-/** The window with all that is in it. Its functions are what menus, keys and scripts do. */
+/** The window with its document, viewports and panels. Menus, keys and scripts call its functions. */
 class App {
  public:
   explicit App(const Options &options);
   ~App();
 
   /**
-   * Take events, draw what has changed, and show it. \a may_wait: where another frame would show the same, first wait
-   * for an event.
+   * Process events, draw what has changed, and present the frame. \a may_wait: wait for an event first if the frame
+   * would not differ from the last.
    */
   void draw_frame(bool may_wait);
   [[nodiscard]] bool is_closed() const
   {
     return is_quit_ || window_.is_closed();
   }
-  /** Whether all viewports have all their samples, and nothing is being opened. */
+  /** Whether all viewports have all their samples and no file is being opened. */
   [[nodiscard]] bool is_complete() const
   {
     return is_complete_ && !is_opening();
   }
 
-  /** Open a file. A file that cannot be read is an error message, and what was open stays. \return whether it is open
+  /**
+   * Open a file. If it cannot be read, show an error message and keep the open scene. \return whether the file was
+   * opened
    */
   bool open(const std::filesystem::path &path);
-  /** The same in the background, while the window shows how far it is. An earlier one that is not done is cancelled. */
+  /** Open a file in the background and show the progress. Cancels an earlier background opening. */
   void begin_open(const std::filesystem::path &path);
-  /** A file that was dropped on the window: a picture lights the scene, others are opened in the background. */
+  /**
+   * Use a file that was dropped on the window: a picture becomes the world's picture; any other file is opened in the
+   * background.
+   */
   void drop(const std::filesystem::path &path);
   /**
-   * Light the scene by an equirectangular picture. One that cannot be read is an error message, and the world stays.
+   * Light the scene by an equirectangular picture. If it cannot be read, show an error message and keep the world.
    * \return whether it was read
    */
   bool set_world_picture(const std::filesystem::path &path);
@@ -60,35 +65,41 @@ class App {
   {
     return opening_ != nullptr;
   }
-  /** What is opened in the background is not to be opened. */
+  /** Cancel opening. */
   void cancel_open();
   /**
-   * Measure error against time of the active viewport's picture in the background. The tab Error shows it. A message
-   * where that is not possible, and when it has ended.
+   * Measure error against time for the active viewport's picture in the background. The tab Error shows the result. A
+   * message tells when the measurement ends, or why it cannot begin.
    */
   void begin_measurement();
-  /** \return false: nothing is being measured */
+  /** \return false if no measurement is running */
   bool cancel_measurement();
-  /** \return whether it was written; otherwise there is an error message */
+  /** \return whether the file was written; if not, an error message is shown */
   bool save(const std::filesystem::path &path);
-  /** The active viewport's picture: EXR is scene-linear, PNG the window's pixels of it. \throws std::runtime_error */
+  /**
+   * Write the active viewport's picture: EXR holds scene-linear radiance, PNG the pixels as displayed. \throws
+   * std::runtime_error
+   */
   void save_picture(const std::filesystem::path &path);
-  /** Write the window at the end of the next frame, whose draw_frame throws std::runtime_error if that fails. */
+  /**
+   * Write a picture of the window at the end of the next frame. That call of draw_frame throws std::runtime_error if
+   * writing fails.
+   */
   void request_screenshot(const std::filesystem::path &path)
   {
     screenshot_ = {.path = path};
     frames_to_draw_ = std::max(frames_to_draw_, 1);
   }
   /**
-   * Compile the shaders of a folder, now and whenever a file of it changes. What is wrong with them is a message.
-   * \throws std::runtime_error where there is no such folder
+   * Compile the shaders of a folder, now and whenever one of its files changes. Errors in them are shown as messages.
+   * \throws std::runtime_error if the folder does not exist
    */
   void use_shaders(const std::filesystem::path &folder);
   void quit()
   {
     is_quit_ = true;
   }
-  /** As the button that closes the window: asks if edits are not saved. */
+  /** Act as the window's close button: ask first if there are unsaved edits. */
   void close()
   {
     window_.set_closed(true);
@@ -107,30 +118,35 @@ class App {
   void frame(bool is_all);
   void look_through_camera();
 
-  /** Do what a key does. */
+  /** Run the action of a key. */
   void take_key(const KeyPress &press);
-  /** Lets the selected node follow the pointer in the active viewport; a message where that is not possible. */
+  /**
+   * Start to transform the selected node with the pointer in the active viewport. Shows a message if that is not
+   * possible.
+   */
   void begin_transform(TransformKind kind);
-  /** \a change: returns whether it has changed the operation. No effect where none has begun. */
+  /** Apply \a change, which returns whether it changed the operation. No effect without an operation. */
   void change_transform(const std::function<bool(TransformOperation &operation)> &change);
   void end_transform(bool is_kept);
-  /** At the point that the active viewport turns around; a camera where its eye is. \pre a document */
+  /** Add at the orbit centre; a camera at the eye. \pre a document is open */
   void add(const Addition &addition);
-  /** \return false: nothing is selected, which is a message */
+  /** \return false if no node is selected; a message says so */
   bool remove_selected();
   bool duplicate_selected();
-  /** Keys and pointer move the eye of the active viewport, until Enter, Escape or a button. */
+  /**
+   * Start fly mode: keys and pointer move the eye of the active viewport until Enter, Escape or a mouse button ends it.
+   */
   void begin_fly();
   void end_fly(bool is_kept);
-  /** Show a menu, or a window that asks for a path. */
+  /** These functions open a menu or a dialog that asks for a path. */
   void ask_addition();
   void ask_open();
-  /** \a then: what follows once it is saved */
+  /** \a then: called after the scene is saved */
   void ask_save(std::function<void()> then = {});
   void ask_screenshot();
   void ask_world_picture();
 
-  /** 1, 2 or 4. */
+  /** \a count: 1, 2 or 4. */
   void set_viewport_count(int count);
   void set_active(int index)
   {
@@ -144,7 +160,7 @@ class App {
   {
     return *viewports_[active_];
   }
-  /** nullptr: nothing is open. */
+  /** nullptr: no document is open. */
   [[nodiscard]] Document *document()
   {
     return document_.get();
@@ -153,9 +169,9 @@ class App {
   {
     return window_;
   }
-  /** Show the tab of that name on the right. \return false: there is none */
+  /** Show the tab \a name of the right panel. \return false if there is no such tab */
   bool show_tab(const std::string &name);
-  /** Show a layer in the tab Shadow. \pre a document \see ShadowPanel::select */
+  /** Show a shadow layer in the tab Shadow. \pre a document is open \see ShadowPanel::select */
   void show_layer(const std::string &name)
   {
     shadow_panel_.select(*document_, active(), name);
@@ -163,53 +179,53 @@ class App {
   }
 
   void message(std::string text, bool is_error);
-  /** A message about what could not be done. After gpu::DeviceLost, the context is made anew before the next frame. */
+  /** Show \a error as a message. After gpu::DeviceLost, the context is created again before the next frame. */
   void report(const std::exception &error);
   [[nodiscard]] const std::vector<Message> &messages() const
   {
     return messages_;
   }
-  /** Errors of the driver so far. */
+  /** Number of errors that the driver has reported. */
   [[nodiscard]] int driver_error_count() const
   {
     return driver_error_count_;
   }
 
  private:
-  /** A window that asks for a path. */
+  /** A dialog that asks for a path. */
   struct PathQuestion {
     std::string title;
     std::string path;
     std::function<void(const std::string &)> answer;
   };
-  /** Of the window. */
+  /** A picture of the window that is to be written. */
   struct Screenshot {
     std::filesystem::path path;
-    /** To be drawn before, until the question for the path is closed. */
+    /** The number of frames to draw before, until the question for the path is closed. */
     int frames = 0;
-    /** A user has asked for it, so that a failure is a message. */
+    /** The user requested it: a failure is shown as a message. */
     bool is_asked = false;
   };
-  /** Do what gives up the scene. If it has edits that are not saved, the user is asked before. */
+  /** Run an action that discards the scene; ask first if it is not saved. */
   void leave(std::function<void()> action);
   void write_screenshot();
   /**
-   * Wait for what is opened in the background, and show it. If the scene was edited meanwhile, the user is asked
-   * before. \return false: it could not be read
+   * Wait for the background opening and show its scene. If the open scene was edited meanwhile, ask first. \return
+   * false if the file could not be read
    */
   bool finish_open();
   void finish_measurement();
   void show_document(scene::Scene scene);
   void make_device();
   /**
-   * Replace the lost context, the device on it and all that is on the device. \throws std::runtime_error if that fails
-   * several times: what was not saved is then written beside the scene's file, which the message names
+   * Replace the lost context, its device and all resources of the device. \throws std::runtime_error if that fails
+   * several times; unsaved edits are then written to a file beside the scene's file, and the message names it
    */
   void make_context_anew();
-  /** Write the scene if it is not saved. \return a sentence about it; may be empty */
+  /** Write the scene to a rescue file if it is not saved. \return a sentence that names the file; may be empty */
   [[nodiscard]] std::string rescue();
   void take_events();
-  /** What is done before each frame, outside of the user interface. */
+  /** Bring the document up to date before each frame, outside of the user interface. */
   void update_document();
   void step_fly();
   void update_shaders();
@@ -221,8 +237,7 @@ class App {
   void show_view_menu();
   void show_additions();
   void show_addition_popup();
-  /** \throws output::Error where a picture cannot be written to \a path, or would replace a file that the window reads
-   */
+  /** \throws output::Error if \a path cannot be written or is a file that the window reads */
   void check_output(const std::filesystem::path &path) const;
   // view_layout.cc
   void show_window();
@@ -240,13 +255,15 @@ class App {
   Window window_;
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Document> document_;
-  /** nullptr: nothing is being opened. */
+  /** nullptr: no file is being opened. */
   std::unique_ptr<gltf::BackgroundImport> opening_;
-  /** scene::Scene::revision of the document when the opening began: later edits are not given up without a question. */
+  /**
+   * scene::Scene::revision of the document when the opening began. Later edits are discarded only after confirmation.
+   */
   scene::Revision opening_revision_ = 0;
-  /** To be shown by the next frame: the window of this one still uses the pictures of the scene that is open. */
+  /** The scene for the next frame: the window of this one still uses the pictures of the open scene. */
   std::shared_ptr<scene::Scene> next_scene_;
-  /** After the document, which they show. */
+  /** Declared after the document, because viewports must be destroyed before it. */
   std::vector<std::unique_ptr<Viewport>> viewports_;
   std::size_t active_ = 0;
   bool is_complete_ = true;
@@ -259,11 +276,11 @@ class App {
   std::vector<Message> messages_;
   int driver_error_count_ = 0;
   std::optional<Screenshot> screenshot_;
-  /** Nothing: those of the build. */
+  /** Empty: the shaders of the build are used. */
   std::optional<ShaderWatch> shader_watch_;
   std::optional<PathQuestion> question_;
   bool is_question_new_ = false;
-  /** What gives up the scene, while the user is asked; empty: nothing. */
+  /** The action that discards the scene, while the user is asked; empty: there is none. */
   std::function<void()> leaving_;
   bool is_leaving_new_ = false;
   bool is_addition_asked_ = false;
@@ -272,7 +289,7 @@ class App {
   FramePanel frame_panel_;
   ShadowPanel shadow_panel_;
   ErrorPanel error_panel_;
-  /** To be brought to the front. */
+  /** The tab to bring to the front. */
   std::string shown_tab_;
   float left_width_ = 230.0F;
   float right_width_ = 340.0F;

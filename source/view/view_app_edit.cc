@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What changes the scene and the camera, for keys, menus and scripts.
+// Edits of the scene and the camera, for keys, menus and scripts.
 #include "view_app.hh"
 #include "view_keys.hh"
 
@@ -119,7 +119,7 @@ void App::step_fly()
   input.is_fast = io.KeyShift;
   input.seconds = double(io.DeltaTime);
   viewport.fly->step(viewport.navigation, input);
-  // Keys that are held are no events.
+  // Held keys cause no events; draw frames continuously.
   frames_to_draw_ = std::max(frames_to_draw_, 1);
   const bool is_left = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
   if (is_left || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {

@@ -12,7 +12,7 @@
 
 namespace gnomon::view {
 
-/** A texture of the window's context that viewports are drawn into, and that the user interface shows. */
+/** A texture of the window's context that a viewport draws into and the user interface shows. */
 class Canvas {
  public:
   Canvas() = default;
@@ -20,15 +20,15 @@ class Canvas {
   Canvas &operator=(const Canvas &) = delete;
   ~Canvas();
 
-  /** Delete the texture; the size is 0 then. */
+  /** Delete the texture. The size is 0 afterwards. */
   void free();
-  /** The content is lost where the size changes. \pre size_px is at least 1x1 */
+  /** Set the size. The content is lost if the size changes. \pre size_px is at least 1x1 */
   void resize(glm::ivec2 size_px);
   void clear(const glm::vec4 &color);
-  /** Rows from the bottom, four bytes each. Sets the size. */
+  /** Replace size and content. \a rgba: rows from the bottom, four bytes for each pixel. */
   void upload(glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
 
-  /** Rows from the bottom, four bytes each. */
+  /** The content: rows from the bottom, four bytes for each pixel. */
   [[nodiscard]] std::vector<std::uint8_t> read() const;
 
   [[nodiscard]] draw::Target target() const;
@@ -36,7 +36,7 @@ class Canvas {
   {
     return size_px_;
   }
-  /** Draw it as an item of the current window, upright. \a size: on the screen, 0: its own. */
+  /** Draw the texture upright as an item of the current ImGui window. \a size: on the screen, pixels; 0: size_px. */
   void show(glm::vec2 size = glm::vec2(0.0F)) const;
 
  private:

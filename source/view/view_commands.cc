@@ -25,7 +25,7 @@ Document &document(App &app)
   return *app.document();
 }
 
-/** A viewport that has a picture. */
+/** The active viewport, after its picture has been drawn once. */
 Viewport &drawn_viewport(App &app)
 {
   document(app);
@@ -35,7 +35,7 @@ Viewport &drawn_viewport(App &app)
   return app.active();
 }
 
-/** \throws the last message where \a is_done is false */
+/** \throws std::runtime_error with the last message if \a is_done is false */
 void require(App &app, bool is_done)
 {
   if (!is_done) {
@@ -171,7 +171,7 @@ void expect_selected(App &app, Words words)
   }
 }
 
-/** Set a property of \a thing, which may be absent. \return whether it has the property */
+/** Set a property of \a thing; the handle may be invalid. \return whether it has the property */
 template <typename T>
 bool set_of(Document &document, scene::Handle<T> thing, const std::string &name, Words values)
 {
@@ -201,7 +201,7 @@ bool set_of_shadow(Document &document, scene::Handle<scene::Lamp> handle, const 
   return true;
 }
 
-/** Of the selected node: its placement, flags, lamp, camera or first material. \return whether it has the property */
+/** Set a property of the selected node: placement, flags, lamp, camera or first material. \return whether it has it */
 bool set_of_selected(Document &document, const std::string &name, Words values)
 {
   const scene::Scene &scene = document.scene();
@@ -221,7 +221,7 @@ bool set_of_selected(Document &document, const std::string &name, Words values)
          (mesh && set_of(document, mesh->material, name, values));
 }
 
-/** A file, or none. */
+/** Argument: a file, or none. */
 void set_world_picture(App &app, Words values)
 {
   if (values.size() != 1) {
@@ -234,7 +234,7 @@ void set_world_picture(App &app, Words values)
   require(app, app.set_world_picture(values[0]));
 }
 
-/** "world.NAME", "render.NAME", or a property of the selected node. */
+/** The first argument is "world.NAME", "render.NAME", or a property of the selected node. */
 void set(App &app, Words words)
 {
   Document &edited = document(app);
@@ -292,7 +292,7 @@ void drag_handle(App &app, Words words)
   }
 }
 
-/** A click, or a drag, of anything in the window. */
+/** Click at one position in the window, or drag between two. */
 void use_pointer(App &app, Words words)
 {
   if (words.size() == 3) {

@@ -10,25 +10,25 @@
 
 namespace gnomon::view {
 
-/** What a command needs before the next one. */
+/** The state that a command needs before the next one is read. */
 enum class Need { Nothing, Frame, Pointer, Pictures, Message };
 
 /** The arguments of a command. */
 using Words = std::span<const std::string>;
 
-/** A command of scripts. doc/view.md describes all. */
+/** A script command. doc/view.md describes all commands. */
 struct Command {
   std::string_view name;
-  /** The arguments, for messages. */
+  /** Syntax of the arguments, for messages. */
   std::string_view usage;
   std::size_t argument_min;
   std::size_t argument_max;
   Need need;
-  /** \throws std::exception with the reason where it fails */
+  /** \throws std::exception with the reason if the command fails */
   void (*run)(App &app, Words words);
 };
 
-/** nullptr: there is none of that name. */
+/** nullptr: no command has that name. */
 [[nodiscard]] const Command *find_command(std::string_view name);
 
 }  // namespace gnomon::view

@@ -14,7 +14,7 @@
 
 namespace gnomon::view {
 
-/** The text of a surface function's file. More than it may have is not read. \throws std::runtime_error */
+/** Text of a surface function's file. Reads at most the allowed length. \throws std::runtime_error */
 static std::string text_of(const std::string &path)
 {
   // Opening a pipe might never end.
@@ -43,7 +43,7 @@ void Document::leave_device()
   registry_ = {};
   render_scene_.reset();
   has_own_shaders_ = false;
-  // Whoever shows something from the device reads it again.
+  // Panels and viewports then read data of the device again.
   settings_revision_++;
 }
 
@@ -94,7 +94,7 @@ std::vector<std::string> Document::reload_shaders(draw::Viewport &viewport, gpu:
 {
   auto &eevee = dynamic_cast<eevee::Engine &>(engine("eevee"));
   has_own_shaders_ = true;
-  // Viewports are synced again.
+  // Viewports sync again.
   settings_revision_++;
   return eevee.reload_shaders(viewport, std::move(files), shader_check::reflect);
 }
@@ -107,7 +107,7 @@ std::vector<std::string> Document::reload_surface_functions()
     std::error_code error;
     const fs::file_time_type time =
         function.path.empty() ? fs::file_time_type() : fs::last_write_time(function.path, error);
-    // A file that an editor is replacing is read once it is there again.
+    // The file may be missing while an editor replaces it; a later call reads it.
     if (function.path.empty() || error) {
       continue;
     }

@@ -19,20 +19,20 @@
 
 namespace gnomon::view {
 
-/** An open scene on a device, with the engines that show it, its undo history and what is selected. */
+/** An open scene on a device, with its engines, undo history and selection. */
 class Document {
  public:
   /**
-   * \a device must outlive the document, unless it leaves the device. The document must outlive the viewports that show
-   * it.
+   * \a device must outlive the document, or leave_device must be called before. The document must outlive the viewports
+   * that show it.
    */
   Document(gpu::Device &device, scene::Scene scene, const Settings &settings);
-  /** Forget all that is on the device, before the device is destroyed. Scene, history and settings stay. */
+  /** Destroy all resources on the device; call it before the device is destroyed. Scene, history and settings stay. */
   void leave_device();
   /** Show the scene on another device. \pre leave_device */
   void use_device(gpu::Device &device);
 
-  /** A scene that was imported; one that has neither lamps nor a world is lit by a studio. */
+  /** An imported scene, completed: without lamps and world, it gets studio lighting. */
   [[nodiscard]] static scene::Scene completed(scene::Scene scene);
   /** \throws gltf::ExportError */
   void save(const std::filesystem::path &path);
@@ -52,11 +52,11 @@ class Document {
     history_.set_world(scene_, std::move(world));
   }
   /**
-   * Light the scene by a picture, as the picture before it did if there is one. nullptr: by the world's colour alone.
-   * \throws scene::InvalidEdit; nothing changes
+   * Set the world's picture. Strength and rotation of an earlier picture stay. nullptr: light by the world's colour
+   * alone. \throws scene::InvalidEdit and changes nothing
    */
   void set_world_picture(std::shared_ptr<const scene::WorldPicture> picture);
-  /** A node that comes back is selected. */
+  /** A node that undo or redo restores becomes selected. */
   bool undo();
   bool redo();
   [[nodiscard]] History &history()
@@ -64,27 +64,30 @@ class Document {
     return history_;
   }
 
-  /** Selects what it adds. \see view::add */
+  /** Add a node and select it. \see view::add */
   void add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view);
-  /** With its descendants. \return false: nothing is selected */
+  /** Remove the selected node and its descendants. \return false if no node is selected */
   bool remove_selected();
-  /** Selects the copy. \return false: nothing is selected */
+  /** Duplicate the selected node and select the copy. \return false if no node is selected */
   bool duplicate_selected();
 
-  /** Let the selected node follow the pointer in a picture. \throws as TransformOperation */
+  /** Start to transform the selected node with the pointer in a picture. \throws as TransformOperation */
   void begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer);
-  /** nullptr: none has begun. Call update_transform after changing it. */
+  /** The running transform; nullptr: none. Call update_transform after changing it. */
   [[nodiscard]] TransformOperation *operation()
   {
     return operation_ ? &*operation_ : nullptr;
   }
-  /** Edit the node as the operation says. */
+  /** Set the node's matrix from the operation. */
   void update_transform();
-  /** Its edits are one step for undo; if it is not kept, the node is as it was. No effect where none has begun. */
+  /**
+   * End the transform. Its edits become one undo step; if it is not kept, the node's matrix is restored. No effect
+   * without an operation.
+   */
   void end_transform(bool is_kept);
-  /** The gizmo at the selected node; nothing: none. */
+  /** Kind of the gizmo at the selected node. Empty: none. */
   std::optional<TransformKind> gizmo = TransformKind::Move;
-  /** Of the axes of the gizmo, and those that transforms begin with. */
+  /** The orientation of the gizmo's axes, and of those that transforms begin with. */
   Orientation orientation = Orientation::World;
 
   [[nodiscard]] bool is_saved() const
@@ -100,25 +103,28 @@ class Document {
   {
     return engine_names_;
   }
-  /** The first call makes it. \throws gpu::Error naming the engines where there is none of that name */
+  /**
+   * The engine \a name, which the first call creates. \throws gpu::Error, which lists the engines, if there is none of
+   * that name
+   */
   [[nodiscard]] draw::Engine &engine(const std::string &name);
-  /** The engine with lamps and shadows; nullptr: no viewport has used it. */
+  /** The engine eevee. nullptr: no viewport has used it yet. */
   [[nodiscard]] eevee::Engine *eevee();
 
   /**
-   * Compile the programs of the engine with lamps and shadows from other files. \a viewport: one that it draws in, if
-   * any does. \return a message for each program that does not compile and stays as it was
+   * Compile the programs of the engine eevee from other files. \a viewport: one that eevee draws, if there is one.
+   * \return a message for each program that does not compile; the earlier program stays in use
    */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files);
-  /** Whether reload_shaders was called on this device. */
+  /** Whether reload_shaders was called since the document uses this device. */
   [[nodiscard]] bool has_own_shaders() const
   {
     return has_own_shaders_;
   }
 
   /**
-   * Read the surface functions again whose files have changed since the last call, or since they were first seen. That
-   * is no edit for undo. \return a message for each
+   * Read surface functions again if their files have changed since the last call, or since the first call that saw
+   * them. Not an undo step. \return a message for each function read again
    */
   std::vector<std::string> reload_surface_functions();
 
@@ -127,7 +133,7 @@ class Document {
     return settings_;
   }
   void set_settings(const Settings &settings);
-  /** With the settings of these viewports. */
+  /** The shadow of \a lamp, with the current settings. */
   [[nodiscard]] ShadowOfLamp shadow_of(const scene::Lamp &lamp) const
   {
     return {lamp.kind, settings_.eevee.shadow.kind, lamp.shadow};
@@ -137,22 +143,22 @@ class Document {
     return settings_revision_;
   }
 
-  /** An invalid handle: nothing. */
+  /** Invalid handle: no node is selected. */
   scene::Handle<scene::Node> selected{};
   /** The selected node and its descendants. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_nodes() const;
-  /** The box around the selected nodes, a lamp being a point; around the scene where nothing is selected. */
+  /** Bounding box of the selected nodes; a lamp counts as a point. Without a selection: of the scene. */
   [[nodiscard]] scene::Bounds selected_bounds() const;
-  /** The first node of that name; an invalid handle: there is none. */
+  /** The first node with that name. Invalid handle: none. */
   [[nodiscard]] scene::Handle<scene::Node> find(const std::string &name) const;
 
  private:
-  /** Deforms meshes whose joints an edit has moved, removed or brought back. */
+  /** Deform meshes whose joints an edit has moved, removed or restored. */
   void deform();
 
   scene::Scene scene_;
   History history_;
-  /** Nothing: the document has left its device. */
+  /** Empty: the document has left its device. */
   std::optional<render_scene::RenderScene> render_scene_;
   draw::EngineRegistry registry_;
   std::vector<std::string> engine_names_;
@@ -161,7 +167,7 @@ class Document {
   Settings settings_;
   std::uint64_t settings_revision_ = 0;
   bool has_own_shaders_ = false;
-  /** Of the last write of the file of each surface function. */
+  /** The time of the last write of the file of each surface function. */
   std::map<scene::Handle<scene::SurfaceFunction>, std::filesystem::file_time_type> function_times_;
   scene::Revision saved_revision_ = 0;
 };

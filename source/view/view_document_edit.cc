@@ -11,7 +11,7 @@ void Document::set_world_picture(std::shared_ptr<const scene::WorldPicture> pict
   if (!picture && !scene_.world()) {
     return;
   }
-  // A colour that was the light itself would tint the picture.
+  // The colour of a world without a picture would tint the new picture.
   const bool is_kept = scene_.world() && (scene_.world()->picture || !picture);
   scene::World world = is_kept ? *scene_.world() : scene::World();
   world.picture = std::move(picture);
@@ -24,8 +24,8 @@ void Document::deform()
     scene::deform_meshes(scene_);
   }
   catch (const scene::InvalidEdit & /*fault*/) {
-    // Joints that are scaled beyond the range of float leave their mesh as it was, until an edit or undo scales them
-    // back. The edit of the joints itself is valid.
+    // If joints are scaled beyond the range of float, the mesh keeps its last shape until an edit or undo scales them
+    // back. The edit of the joints stays valid.
   }
 }
 

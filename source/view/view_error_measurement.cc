@@ -13,11 +13,11 @@ namespace gnomon::view {
 
 namespace {
 
-/** Of this thread and those that it will begin. */
+/** Lowers the priority of this thread and of those that it will begin. */
 void lower_priority()
 {
 #ifdef __linux__
-  // POSIX has one value for a process, Linux one for each thread. A failure only leaves the priority as it is.
+  // POSIX has one priority for a process, Linux one for each thread. After a failure, the priority stays unchanged.
   constexpr int lowest = 19;
   setpriority(PRIO_PROCESS, 0, lowest);
 #endif

@@ -13,34 +13,37 @@
 namespace gnomon::view {
 
 /**
- * A measurement of error against time on a thread of its own, with a device and an OpenGL context of its own, so that
- * the window stays alive. The thread has the lowest priority, so that the window's frames come first.
- *
- * Threads: all functions are called on one thread, the window's.
+ * A measurement of error against time on a separate thread with its own device and OpenGL context, so that the window
+ * stays responsive. The thread has the lowest priority. Threads: call all functions on the window's thread.
  */
 class ErrorMeasurement {
  public:
-  /** Begin to measure. \see measure::measure_error_time \throws std::system_error if there can be no other thread */
+  /**
+   * Start the measurement. \see measure::measure_error_time \throws std::system_error if the thread cannot be created
+   */
   ErrorMeasurement(scene::Scene scene, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                    const eevee::Settings &settings);
   ErrorMeasurement(const ErrorMeasurement &) = delete;
   ErrorMeasurement &operator=(const ErrorMeasurement &) = delete;
-  /** Cancels, and waits until the measurement has ended (\see cancel). */
+  /** Cancel, and wait until the measurement has ended (\see cancel). */
   ~ErrorMeasurement();
 
-  /** The part that is done, in [0, 1]. */
+  /** Progress in [0, 1]. */
   [[nodiscard]] float progress() const
   {
     return progress_;
   }
-  /** The pictures that are measured. */
+  /** The points measured so far. */
   [[nodiscard]] std::vector<measure::TimedError> points() const;
-  /** The measurement has ended: finish does not wait. */
+  /** Whether the measurement has ended, so that finish does not wait. */
   [[nodiscard]] bool is_done() const
   {
     return is_done_;
   }
-  /** Let it end at most one sample or one traced pixel later; not while it compiles shaders or sorts triangles. */
+  /**
+   * Request the end. The thread ends within one sample or one traced pixel, but not while it compiles shaders or builds
+   * the tree of triangles.
+   */
   void cancel()
   {
     is_cancelled_ = true;
@@ -50,8 +53,9 @@ class ErrorMeasurement {
     return is_cancelled_;
   }
   /**
-   * Waits for the end. \return what the rays leave out, \see reference::untraced_parts \pre not called before
-   * \throws as measure::measure_error_time, and gpu::Error if there can be no other context
+   * Wait for the end. \return the parts of the scene that the ray tracer leaves out, \see reference::untraced_parts
+   * \pre not called before
+   * \throws as measure::measure_error_time, and gpu::Error if the context cannot be created
    */
   std::vector<std::string> finish();
 
@@ -68,7 +72,7 @@ class ErrorMeasurement {
   mutable std::mutex mutex_;
   /** Guarded by mutex_. */
   std::vector<measure::TimedError> points_;
-  /** Of the measurement's thread, until it is joined. */
+  /** The measurement's thread owns these until it is joined. */
   std::vector<std::string> untraced_;
   std::exception_ptr error_;
   std::thread thread_;

@@ -13,7 +13,7 @@ namespace gnomon::view {
 
 namespace {
 
-/** Of the plot: powers of ten that hold all values. */
+/** The range of an axis of the plot: powers of ten that hold all values. */
 struct LogRange {
   double low = 0.0;
   double high = 0.0;
@@ -24,14 +24,14 @@ struct LogRange {
     low = is_first ? std::floor(std::log10(value)) : std::min(low, std::floor(std::log10(value)));
     high = std::max(is_first ? low + 1.0 : high, std::floor(std::log10(value)) + 1.0);
   }
-  /** In [0, 1]. */
+  /** Position of \a value on the axis, in [0, 1]. */
   [[nodiscard]] float place(double value) const
   {
     return float((std::log10(value) - low) / (high - low));
   }
 };
 
-/** An error of 0 has no place on a logarithmic scale. */
+/** An error of 0 cannot be shown on a logarithmic scale. */
 bool is_plotted(const measure::TimedError &point)
 {
   return point.error.rmse > 0.0 && point.seconds > 0.0;
@@ -145,7 +145,7 @@ void ErrorPanel::clear()
 std::string ErrorPanel::take()
 {
   const std::unique_ptr<ErrorMeasurement> ended = std::move(measurement_);
-  // A cancelled measurement may belong to a document that is closed. Its result is not shown, even if it is complete.
+  // A cancelled measurement may belong to a closed document. Its result is not shown, even if it is complete.
   if (ended->is_cancelled()) {
     throw measure::Cancelled();
   }

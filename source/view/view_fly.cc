@@ -8,11 +8,11 @@ namespace gnomon::view {
 
 namespace {
 
-/** Of a pointer that moves by the picture's height; radians. */
+/** The turn for a pointer that moves by the picture's height, radians. */
 constexpr double look_angle = 1.5;
 constexpr double fast_factor = 5.0;
 constexpr double wheel_factor = 1.2;
-/** A frame that took longer is a step of this time, so that nobody flies through walls unseen. */
+/** Limit of the time of one step, so that a slow frame does not move the eye through walls unseen. */
 constexpr double seconds_max = 0.1;
 
 }  // namespace

@@ -5,26 +5,26 @@
 
 namespace gnomon::view {
 
-/** What keys and pointer ask for since the last step of a flight. */
+/** The input of keys and pointer since the last step of a flight. */
 struct FlyInput {
   /** Right, up and back, each -1, 0 or 1. */
   glm::dvec3 direction{0.0};
-  /** Of the pointer: right and down, as fractions of the picture's height. */
+  /** The pointer's motion right and down, as fractions of the picture's height. */
   glm::dvec2 looked{0.0};
-  /** Notches of the wheel, away from the user: faster. */
+  /** Notches of the wheel, positive away from the user; positive values increase the speed. */
   double wheel = 0.0;
   bool is_fast = false;
   double seconds = 0.0;
 };
 
-/** A flight through the scene, which ends where it is or where it began. */
+/** State of fly mode, whose end keeps the current view or restores the first. */
 class Fly {
  public:
-  /** The speed suits the distance to the point that \a navigation turns around. */
+  /** The initial speed is proportional to the distance to the orbit centre of \a navigation. */
   explicit Fly(const Navigation &navigation) : before_(navigation), speed_(0.5 * navigation.distance()) {}
 
   void step(Navigation &navigation, const FlyInput &input);
-  /** Where it began. */
+  /** The view at the start. */
   [[nodiscard]] const Navigation &before() const
   {
     return before_;

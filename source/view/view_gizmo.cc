@@ -39,7 +39,8 @@ std::array<glm::dvec3, 2> across(const glm::dvec3 &axis)
 
 Path screen_circle(const PictureMap &map, const glm::dvec3 &position_ws, double radius_px)
 {
-  // Around the line of sight to the node, so that it is a circle also beside the middle of the picture.
+  // The circle is perpendicular to the line of sight to the node, so that it looks round also away from the middle of
+  // the picture.
   const double radius = radius_px * map.metres_per_pixel(position_ws);
   const auto [x, y] = across(map.towards_eye(position_ws));
   Path circle = ellipse(position_ws, radius * x, radius * y);
@@ -47,7 +48,7 @@ Path screen_circle(const PictureMap &map, const glm::dvec3 &position_ws, double 
   return circle;
 }
 
-/** The half of the circle around \a axis that is turned to the eye; all of it where it faces the eye. */
+/** The half of the circle around \a axis that is nearer to the eye; the whole circle if \a axis points to the eye. */
 Path ring(const PictureMap &map, const glm::dvec3 &position_ws, const glm::dvec3 &axis)
 {
   const double radius = axis_px * map.metres_per_pixel(position_ws);
@@ -63,13 +64,13 @@ Path ring(const PictureMap &map, const glm::dvec3 &position_ws, const glm::dvec3
   return ellipse(position_ws, radius * side, radius * front, 32, 0.5);
 }
 
-/** The line of an arrow and its tip: of a move an arrow's, of a scale a square. */
+/** A handle's line and its tip: an arrow head for moving, a square for scaling. */
 std::vector<Path> arrow(const PictureMap &map, const glm::dvec3 &position_ws, const glm::dvec3 &axis,
                         TransformKind kind)
 {
   const double pixel = map.metres_per_pixel(position_ws);
   const auto at = [&](double along_px) { return position_ws + along_px * pixel * axis; };
-  // In the picture's plane, so that the tip has the same width from every side.
+  // The tip lies in the picture's plane, so that its width is the same from every direction.
   const glm::dvec3 side = tip_width_px * pixel * glm::normalize(glm::cross(axis, map.towards_eye(position_ws)));
   if (kind == TransformKind::Move) {
     const glm::dvec3 back = at(axis_px - tip_px);
@@ -144,7 +145,7 @@ std::vector<overlay::Line> axis_lines(const TransformOperation &operation, const
   const Transform &transform = operation.transform();
   if (transform.axis != TransformAxis::All) {
     const glm::dvec3 position_ws(operation.start_ws()[3]);
-    // Beyond the edges of every picture.
+    // The line reaches beyond the edges of the picture.
     const glm::dvec3 way =
         1e4 * map.metres_per_pixel(position_ws) * axis_ws(operation.start_ws(), transform.axis, transform.orientation);
     LineBrush{lines, colors[std::size_t(transform.axis)], 1.5F, true}.line(position_ws - way, position_ws + way);

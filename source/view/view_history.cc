@@ -55,7 +55,7 @@ void History::remove(scene::Scene &scene, Handle<Node> root)
 
 void History::remove_members(scene::Scene &scene, const SubtreeChange &change)
 {
-  // The last first, so that all have the same places in the scene's order when they are brought back.
+  // Remove the last node first, so that restored nodes have the same places in the scene's order.
   for (const SubtreeChange::Member &member : std::views::reverse(change.members)) {
     scene.remove(member.node);
   }

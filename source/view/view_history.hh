@@ -12,17 +12,17 @@
 namespace gnomon::view {
 
 /**
- * Edits of one scene that can be undone: of nodes, lamps, cameras, materials and the world, and nodes that are added
- * and removed. Each keeps the values before and after it, so that undoing is an edit like any other. What comes back
- * has its old handle, so that animations, skins and other edits name it again. Nodes may be added and removed only by
- * this class; lamps, cameras, meshes and materials may not be removed.
+ * Undo history of one scene: edits of nodes, lamps, cameras, materials and the world, and added and removed nodes. Each
+ * edit stores the values before and after it; undo is an ordinary edit. A restored node has its old handle, so that
+ * animations, skins and other edits refer to it again. Nodes may be added and removed only through this class; lamps,
+ * cameras, meshes and materials may not be removed.
  */
 class History {
  public:
-  /** More are forgotten, the oldest first, so that a long session does not take ever more memory. */
+  /** Maximum number of changes; the oldest are dropped first. This bounds the memory of a long session. */
   static constexpr std::size_t change_max = 1000;
 
-  /** Changes a thing by \a change, as scene::Scene::edit, and takes note of it. \throws as that; nothing changes. */
+  /** Edit \a thing by \a change and record the edit. \throws as scene::Scene::edit; nothing changes then */
   template <typename T, std::invocable<T &> Change>
   void edit(scene::Scene &scene, scene::Handle<T> thing, Change &&change)
   {
@@ -41,22 +41,22 @@ class History {
     add(ThingChange<T>{thing, before, std::move(after)});
   }
   void set_world(scene::Scene &scene, std::optional<scene::World> world);
-  /** Takes note of \a root, which was just added with its descendants. */
+  /** Record the addition of \a root with its descendants, just after it was added. */
   void note_added(const scene::Scene &scene, scene::Handle<scene::Node> root);
-  /** Removes \a root with its descendants. Their lamps, cameras and meshes stay in the scene. */
+  /** Remove \a root with its descendants. Their lamps, cameras and meshes stay in the scene. */
   void remove(scene::Scene &scene, scene::Handle<scene::Node> root);
-  /** Further edits of the same thing are undone separately. Until then they are one, as a slider makes them. */
+  /** End a gesture. Edits of one thing within a gesture, as by a slider, are one undo step. */
   void end_gesture()
   {
     is_in_gesture_ = false;
   }
-  /** Undo what was edited since the last end_gesture, and forget it. */
+  /** Undo the edits since the last end_gesture and drop them from the history. */
   void revert_gesture(scene::Scene &scene);
 
-  /** \return whether there was anything to undo, or to redo */
+  /** \return whether there was a step to undo, or to redo */
   bool undo(scene::Scene &scene);
   bool redo(scene::Scene &scene);
-  /** The node that the last undo or redo brought back, with its descendants; an invalid handle: none. */
+  /** Root node that the last undo or redo restored. Invalid handle: none. */
   [[nodiscard]] scene::Handle<scene::Node> restored() const
   {
     return restored_;
@@ -89,15 +89,15 @@ class History {
       scene::Node value;
     };
     std::vector<Member> members;
-    /** The next child of the same parent; none if there is none. */
+    /** Next child of the same parent. Invalid handle: none. */
     scene::Handle<scene::Node> next;
-    /** The change added them; otherwise it removed them. */
+    /** The change added the nodes. False: it removed them. */
     bool is_addition = false;
   };
   using Change = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Camera>,
                               ThingChange<scene::Material>, WorldChange, SubtreeChange>;
 
-  /** The last change, if it is of that kind and of the same gesture; otherwise nullptr. */
+  /** The last change if it is of type \a Kind and belongs to the current gesture; otherwise nullptr. */
   template <typename Kind>
   Kind *mergeable()
   {
@@ -111,7 +111,7 @@ class History {
   void restore_members(scene::Scene &scene, const SubtreeChange &change);
 
   std::deque<Change> changes_;
-  /** The others were undone. */
+  /** Number of changes that are applied; the later ones were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
   scene::Handle<scene::Node> restored_{};

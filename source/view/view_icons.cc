@@ -21,11 +21,11 @@ constexpr double cone_px = 130.0;
 constexpr double arrow_px = 45.0;
 constexpr double dome_px = 28.0;
 constexpr double frustum_px = 60.0;
-/** Above the circle that the window draws around a lamp. */
+/** Rays start outside of the circle that the window draws around a lamp. */
 constexpr double ray_start_px = 10.0;
 constexpr double ray_end_px = 16.0;
 
-/** Where a lamp or a camera is, and what draws it. */
+/** Frame of a lamp or camera, with the brush and map to draw it. */
 struct Place {
   LineBrush brush;
   const PictureMap &map;
@@ -65,7 +65,7 @@ struct Place {
 void add_point(const Place &place, const scene::PlacedLamp &lamp)
 {
   if (lamp.radius > 0.0F) {
-    // It is a disk that is turned to what it lights.
+    // The lamp is a disk that faces each point that it lights.
     const double radius = double(lamp.radius);
     place.brush.path(ellipse(place.position_ws(), radius * place.map.axis_ws(0), radius * place.map.axis_ws(1)), true);
   }
@@ -101,7 +101,7 @@ void add_spot(const Place &place, const scene::PlacedLamp &lamp)
     place.brush.line(place.position_ws(), edge[i]);
   }
   if (lamp.spot_blend > 0.0F) {
-    // From here to the edge the light becomes weaker: scene::Lamp::spot_blend.
+    // The inner circle shows where the falloff begins: scene::Lamp::spot_blend.
     const double inner = std::acos(std::cos(outer) + (1.0 - std::cos(outer)) * double(lamp.spot_blend));
     LineBrush faint = place.brush;
     faint.color = glm::vec4(0.6F * glm::vec3(faint.color), 1.0F);
@@ -124,7 +124,7 @@ void add_area(const Place &place, const scene::PlacedLamp &lamp)
   place.arrow(arrow_px);
 }
 
-/** The half of the sky that it stands for, which is behind it. */
+/** Draw the hemisphere of sky that the lamp represents, which is behind the lamp. */
 void add_hemi(const Place &place)
 {
   const double radius = place.metres(dome_px);
@@ -152,7 +152,7 @@ void add_camera(const Place &place, const scene::PlacedCamera &camera)
   for (const glm::dvec3 &corner : corners) {
     place.brush.line(is_parallel ? corner - depth * place.forward_ws() : place.position_ws(), corner);
   }
-  // What is up in its picture.
+  // A triangle marks the upper edge of the camera's picture.
   place.brush.path(std::array{middle + y - 0.4 * x, middle + 1.5 * y, middle + y + 0.4 * x}, false);
 }
 
@@ -177,7 +177,7 @@ std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMa
     }
   }
   for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
-    // At the eye, a pixel has hardly a size.
+    // Leave out a camera at the eye, where the size of a pixel is nearly 0.
     const glm::dvec3 position_ws(camera.world_from_camera[3]);
     if (scene.is_visible(camera.node) && map.metres_per_pixel(position_ws) > 1e-6) {
       add_camera({brush(camera.node, camera_color), map, camera.world_from_camera}, camera);

@@ -10,9 +10,9 @@ namespace gnomon::view {
 
 /**
  * Lines that show the visible lamps and cameras of \a scene in the picture of \a map: the size of point lamps, the
- * direction of suns, the cone of spots, the surface of area lamps, the frame of cameras. What is \a selected is
- * highlighted. Parts without a size of their own have the same size on the screen at every distance. A camera that the
- * picture looks through is left out.
+ * direction of suns, the cone of spots, the surface of area lamps, the frame of cameras. The \a selected node is
+ * highlighted. Parts without a size in the scene have a constant size on the screen. A camera at the picture's eye is
+ * left out.
  */
 [[nodiscard]] std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMap &map,
                                                     scene::Handle<scene::Node> selected);

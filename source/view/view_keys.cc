@@ -22,7 +22,7 @@ struct NamedKey {
   int key;
 };
 
-/** Beside letters and digits. */
+/** Names of keys other than letters and digits. */
 constexpr std::array named_keys = std::to_array<NamedKey>({{".", GLFW_KEY_PERIOD},
                                                            {"-", GLFW_KEY_MINUS},
                                                            {"`", GLFW_KEY_GRAVE_ACCENT},
@@ -32,7 +32,7 @@ constexpr std::array named_keys = std::to_array<NamedKey>({{".", GLFW_KEY_PERIOD
                                                            {"backspace", GLFW_KEY_BACKSPACE},
                                                            {"home", GLFW_KEY_HOME}});
 
-/** Keys of the number block, and those that they stand for. */
+/** Keys of the number block, and their equivalents. */
 constexpr std::array block_keys = std::to_array<std::pair<int, int>>({{GLFW_KEY_KP_DECIMAL, GLFW_KEY_PERIOD},
                                                                       {GLFW_KEY_KP_SUBTRACT, GLFW_KEY_MINUS},
                                                                       {GLFW_KEY_KP_ENTER, GLFW_KEY_ENTER}});

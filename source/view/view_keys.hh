@@ -11,14 +11,14 @@ namespace gnomon::view {
 class App;
 
 /**
- * A key by its name, as menus show it: a letter, a digit, '.', '-', '`', or enter, escape, delete, backspace, home;
- * with "ctrl+" and "shift+" before it. Nothing: there is no such key.
+ * The key with a name as in menus: a letter, a digit, '.', '-', '`', or enter, escape, delete, backspace, home, with
+ * the optional prefixes "ctrl+" and "shift+". Empty: no such key.
  */
 [[nodiscard]] std::optional<KeyPress> key_of(std::string_view name);
 
-/** Do what a key does while nothing is transformed and nobody flies. */
+/** Run the action of a key outside of transforms and fly mode. */
 void run_key(App &app, const KeyPress &press);
-/** The key for a transform that has begun. */
+/** Run the action of a key during a transform. */
 void run_transform_key(App &app, const KeyPress &press);
 
 }  // namespace gnomon::view

@@ -17,7 +17,10 @@ namespace {
 constexpr float splitter_width = 5.0F;
 constexpr std::array<const char *, 6> tab_names = {"Object", "World", "Render", "Frame", "Shadow", "Error"};
 
-/** A bar that is dragged to change \a width; \a sign: -1 where the sized part is to the right of it. */
+/**
+ * A bar that the user drags to change \a width. \a sign: -1 if the resized part is to the right of the bar, otherwise
+ * 1.
+ */
 void show_splitter(const char *name, float height, float sign, float &width)
 {
   ImGui::SameLine(0.0F, 0.0F);
@@ -104,7 +107,7 @@ void App::show_viewport(std::size_t index, glm::vec2 size)
     }
   }
   catch (const std::exception &error) {
-    // What the pointer asked for is not possible.
+    // The transform that the pointer asked for is not possible.
     document_->end_transform(false);
     report(error);
   }
@@ -220,7 +223,7 @@ void App::show_status()
   if (last.is_error) {
     ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.45F, 0.35F, 1.0F});
   }
-  // The line has room for one; compilers write several.
+  // The status line shows one line; messages of compilers have several.
   std::string line = last.text;
   std::ranges::replace(line, '\n', ' ');
   ImGui::TextUnformatted(line.c_str());

@@ -21,7 +21,7 @@ std::vector<glm::dvec3> ellipse(const glm::dvec3 &center_ws, const glm::dvec3 &x
 {
   std::vector<glm::dvec3> points;
   for (int i = 0; i < point_count; i++) {
-    // An arc ends at its last point, a full turn before its first.
+    // An arc includes its end point; a full ellipse ends one step before its first point.
     const double turn = part * i / (part < 1.0 ? point_count - 1 : point_count);
     const double angle = 2.0 * std::numbers::pi * turn;
     points.push_back(center_ws + std::cos(angle) * x_ws + std::sin(angle) * y_ws);

@@ -21,11 +21,11 @@ struct LineBrush {
   {
     lines.push_back({from_ws, to_ws, color, width_px, is_on_top});
   }
-  /** Through all points, and back to the first if \a is_closed. */
+  /** Add lines through all points, and back to the first if \a is_closed. */
   void path(std::span<const glm::dvec3> points_ws, bool is_closed) const;
 };
 
-/** Points of an ellipse with these half axes, from \a x_ws towards \a y_ws; \a part: of the full turn. */
+/** Points of an ellipse with these half axes, from \a x_ws towards \a y_ws. \a part: fraction of the full turn. */
 [[nodiscard]] std::vector<glm::dvec3> ellipse(const glm::dvec3 &center_ws, const glm::dvec3 &x_ws,
                                               const glm::dvec3 &y_ws, int point_count = 48, double part = 1.0);
 

@@ -11,7 +11,7 @@ namespace gnomon::view {
 
 namespace {
 
-/** Which gizmo is shown, and along whose axes. */
+/** Choices of the gizmo and its orientation. */
 void show_gizmo_choice(Document &document)
 {
   constexpr std::array<const char *, 4> kinds = {"No gizmo", "Move", "Rotate", "Scale"};
@@ -34,7 +34,7 @@ void App::show_additions()
 {
   const Addition *before = nullptr;
   for (const Addition &addition : additions()) {
-    // Objects, lamps, camera.
+    // Separate objects, lamps and camera.
     if (before && (before->is_lamp != addition.is_lamp)) {
       ImGui::Separator();
     }

@@ -11,7 +11,7 @@ namespace gnomon::view {
 
 namespace {
 
-/** Far from these, numbers of the camera lose their meaning. */
+/** Limits of the distance. The camera's numbers lose precision beyond them. */
 constexpr double distance_min = 1e-4;
 constexpr double distance_max = 1e9;
 
@@ -32,7 +32,7 @@ void Navigation::look_through(const scene::PlacedCamera &camera, const scene::Bo
   const double to_middle = bounds.is_empty() ? 0.0 : glm::dot(glm::dvec3(bounds.center()) - position, forward);
   distance_ = to_middle > distance_min ? to_middle : 5.0;
   if (is_orthographic_) {
-    // A parallel picture is as high as one in perspective is at the point.
+    // The perspective picture has the height of the orthographic one at the orbit centre.
     vertical_angle_ = 0.7F;
     const double distance = double(camera.half_height) / std::tan(0.5 * double(vertical_angle_));
     target_ws_ = position + distance_ * forward;
@@ -65,7 +65,7 @@ void Navigation::frame(const scene::Bounds &bounds)
   }
   aspect_ = 0.0F;
   target_ws_ = glm::dvec3(bounds.center());
-  // The sphere around the box touches the cone of view; a point is looked at from nearby.
+  // The sphere around the box touches the cone of view. The minimum radius is for a box that is a point.
   const double radius = std::max(double(bounds.radius()), 0.05);
   distance_ = std::clamp(1.05 * radius / std::sin(0.5 * double(vertical_angle_)), distance_min, distance_max);
 }
@@ -115,7 +115,7 @@ scene::PlacedCamera Navigation::camera(double extent) const
     camera.kind = scene::CameraKind::Orthographic;
     camera.half_height = float(half_height());
     camera.half_width = camera.half_height * (aspect_ > 0.0F ? aspect_ : 1.0F);
-    // Far enough that nothing is behind it.
+    // Move the camera back, so that no part of the scene is behind it.
     distance += 2.0 * extent;
     camera.near = 0.0F;
     camera.far = float(distance + 2.0 * extent + glm::length(target_ws_) * 1e-3 + 1.0);

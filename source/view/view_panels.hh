@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-/** What the window shows beside the viewports. Each function draws items of the current window. */
+/** The panels beside the viewports. Each function draws items of the current window. */
 namespace gnomon::view {
 
-/** The rows of tables with \a thing's properties, some under headers. \return whether the user changed \a thing */
+/** Draw table rows for \a thing's properties, grouped under headers. \return whether the user changed \a thing */
 template <typename T>
 bool show_properties(T &thing);
 
-/** The nodes as a tree: a click selects, a box hides. */
+/** The nodes as a tree. A click selects a node; a check box hides it. */
 class SceneTree {
  public:
   void show(Document &document);
@@ -28,14 +28,14 @@ class SceneTree {
   char filter_[64] = "";
 };
 
-/** The selected node: its placement, flags, lamp, camera and materials. */
+/** Show the selected node: placement, flags, lamp, camera and materials. */
 void show_selection(Document &document);
-/** Light from everywhere. \return whether the user wants to choose a picture */
+/** Show the world. \return whether the user wants to choose a picture */
 [[nodiscard]] bool show_world(Document &document);
-/** Settings of all viewports. */
+/** Show the settings, which all viewports share. */
 void show_settings(Document &document);
 
-/** Of what a panel shows: it is made anew where this differs, as it takes time. */
+/** Key of a panel's cached content, which takes time to make. */
 struct PanelKey {
   scene::Revision scene = 0;
   std::uint64_t settings = 0;
@@ -46,7 +46,10 @@ struct PanelKey {
   bool operator==(const PanelKey &) const = default;
 };
 
-/** The frame of a viewport as a list, with bytes, times and reasons, and what is not drawn. */
+/**
+ * The parts of a viewport's frame as a list with bytes, times and reasons, and the parts of the scene that are not
+ * drawn.
+ */
 class FramePanel {
  public:
   void show(Document &document, Viewport &viewport);
@@ -56,22 +59,22 @@ class FramePanel {
   PanelKey shown_;
 };
 
-/** Error against time of the current settings, which is measured in the background. */
+/** Error against time for the current settings, measured in the background. */
 class ErrorPanel {
  public:
   /**
-   * Begin to measure the picture of \a viewport as eevee draws it, of the scene and the settings as they are now.
-   * \throws std::runtime_error if a measurement is under way
+   * Start to measure the picture of \a viewport as eevee draws it, with the current scene and settings. \throws
+   * std::runtime_error if a measurement is running
    */
   void begin(const Document &document, const Viewport &viewport);
-  /** Let the measurement end, if there is one. take throws measure::Cancelled then. */
+  /** Cancel the measurement, if one is running. take then throws measure::Cancelled. */
   void cancel()
   {
     if (measurement_) {
       measurement_->cancel();
     }
   }
-  /** Forget what was measured, of a document that is closed. Cancels. */
+  /** Delete the results when the document closes. Cancels a running measurement. */
   void clear();
   [[nodiscard]] bool is_measuring() const
   {
@@ -81,13 +84,16 @@ class ErrorPanel {
   {
     return measurement_ && measurement_->is_done();
   }
-  /** Show what the measurement gave. \return a sentence about it \pre has_ended \throws what has ended it before */
+  /**
+   * Take the measurement's results and show them. \return a sentence about them \pre has_ended \throws the exception
+   * that ended the measurement early
+   */
   std::string take();
-  /** \return whether the user has asked for a measurement */
+  /** \return whether the user has requested a measurement */
   [[nodiscard]] bool show(const Document &document);
 
  private:
-  /** Of what was measured. */
+  /** Key of the measurement. */
   struct Key {
     scene::Revision scene = 0;
     std::uint64_t settings = 0;
@@ -96,7 +102,7 @@ class ErrorPanel {
   };
   [[nodiscard]] static Key key_of(const Document &document);
 
-  /** nullptr: nothing is being measured. */
+  /** nullptr: no measurement is running. */
   std::unique_ptr<ErrorMeasurement> measurement_;
   std::vector<measure::TimedError> points_;
   std::vector<std::string> untraced_;
@@ -107,14 +113,14 @@ class ErrorPanel {
 /** The layers of the selected lamp's shadow. */
 class ShadowPanel {
  public:
-  /** \a device: of the document. \throws gpu::Error */
+  /** \a device: the document's device. \throws gpu::Error */
   void show(Document &document, Viewport &viewport, gpu::Device &device);
   /**
-   * Show the layer \a text of the selected lamp's shadow: "all", or as eevee::find_layer.
-   * \throws std::runtime_error naming its layers if there is none
+   * Show the layer \a text of the selected lamp's shadow: "all", or a name for eevee::find_layer. \throws
+   * std::runtime_error, which lists the layers, if there is none of that name
    */
   void select(Document &document, Viewport &viewport, const std::string &text);
-  /** Forget the picture, before its OpenGL context is destroyed. */
+  /** Delete the texture; call it before its OpenGL context is destroyed. */
   void close();
 
  private:
@@ -123,7 +129,7 @@ class ShadowPanel {
 
   Canvas canvas_;
   PanelKey shown_;
-  /** 0: all layers, then one after the other. */
+  /** 0: all layers; n > 0: the layer of index n - 1. */
   int layer_ = 0;
 };
 

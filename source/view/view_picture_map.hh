@@ -16,22 +16,22 @@ struct Ray {
   glm::dvec3 direction_ws{0.0, 0.0, -1.0};
 };
 
-/** Between the scene's world space and the pixels of a picture, counted from its upper left corner. */
+/** Mapping between world space and the pixels of a picture, counted from its upper left corner. */
 class PictureMap {
  public:
   PictureMap() = default;
   /** \a view: relative to \a origin_ws, as render_scene::view_of gives it. */
   PictureMap(const draw::View &view, const glm::dvec3 &origin_ws, glm::ivec2 size_px);
 
-  /** Nothing: the point is beside or behind the eye. It may be outside of the picture. */
+  /** Empty: the point is beside or behind the eye. The pixel may be outside of the picture. */
   [[nodiscard]] std::optional<glm::dvec2> pixel_of(const glm::dvec3 &position_ws) const;
-  /** What is seen at \a pixel, from the near plane on. */
+  /** The ray through \a pixel, from the near plane on. */
   [[nodiscard]] Ray ray_through(const glm::dvec2 &pixel) const;
-  /** Size of a pixel at the distance of a point that is seen. */
+  /** Size of a pixel at the distance of a visible point. */
   [[nodiscard]] double metres_per_pixel(const glm::dvec3 &position_ws) const;
   /** Unit vector. */
   [[nodiscard]] glm::dvec3 towards_eye(const glm::dvec3 &position_ws) const;
-  /** Unit vectors: right and up in the picture, and back, against the line of sight of its middle. */
+  /** Unit vectors of the camera's axes. \a axis: 0 right, 1 up, 2 back. */
   [[nodiscard]] glm::dvec3 axis_ws(int axis) const
   {
     return {view_from_world_[0][axis], view_from_world_[1][axis], view_from_world_[2][axis]};

@@ -94,7 +94,7 @@ bool set_property(T &thing, const std::string &name, std::span<const std::string
   };
   const Properties<T> &all = properties<T>();
   if (const auto number = std::ranges::find_if(all.numbers, is_it); number != all.numbers.end()) {
-    // Absence that is stored as 0 may also be written so.
+    // Scripts may also write 0 for absence that is stored as 0.
     const bool is_zero = number->is_zero_absent && words.size() == 1 && words[0] == "0";
     if (number->absent && words.size() == 1 && (words[0] == number->absent || is_zero)) {
       number->remove(thing);

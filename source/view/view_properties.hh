@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/** What can be edited of a thing, as tables: panels show them, and scripts set them by name. */
+/** The editable properties of things, as tables: panels show them, and scripts set them by name. */
 namespace gnomon::view {
 
 struct Limits {
@@ -19,10 +19,10 @@ struct Limits {
   double max = 0.0;
 };
 
-/** One or three numbers, in the units in which they are shown. */
+/** A property of one or three numbers, in the units of the user interface. */
 template <typename T>
 struct NumberProperty {
-  /** In scripts. */
+  /** Name in scripts. */
   const char *name;
   const char *label;
   std::function<const char *(const T &)> unit;
@@ -32,34 +32,34 @@ struct NumberProperty {
   std::function<double(const T &, int)> get;
   std::function<void(T &, int, double)> set;
   bool is_color = false;
-  /** Empty: always. */
+  /** Whether the property applies to a thing. Empty: always. */
   std::function<bool(const T &)> applies{};
-  /** Narrower limits that other values of a thing leave; empty: min and max. */
+  /** Narrower limits, which depend on other values of the thing. Empty: min and max. */
   std::function<Limits(const T &)> narrowed{};
   /**
-   * What a thing without the number has instead, in panels and in scripts; nullptr: things always have it. `get` is the
+   * The word for a thing without the number, in panels and in scripts; nullptr: things always have it. `get` is the
    * number to begin with where a thing has none.
    */
   const char *absent = nullptr;
   std::function<bool(const T &)> is_absent{};
-  /** Absence is stored as 0, and scripts may write 0 for it. */
+  /** Absence is stored as 0; scripts may also write 0. */
   bool is_zero_absent = false;
   std::function<void(T &)> remove{};
-  /** It is a slider with a logarithmic scale, and this stands for 0 at its lower end; nullptr: it is none. */
+  /** The word for 0 at the lower end of a slider with a logarithmic scale; nullptr: the row is no slider. */
   const char *slider_zero = nullptr;
-  /** A header that the panel shows it under. Empty: none. */
+  /** Header above the property in the panel. Empty: none. */
   const char *group = "";
 
   [[nodiscard]] Limits limits(const T &thing) const
   {
     Limits limits = narrowed ? narrowed(thing) : Limits{min, max};
-    // Other values may leave nothing between them.
+    // Narrowed limits may exclude each other.
     limits.max = std::max(limits.min, limits.max);
     return limits;
   }
 };
 
-/** One of several. With two options, "off" and "on", a check box. */
+/** A choice of one option. The options "off" and "on" are shown as a check box. */
 template <typename T>
 struct ChoiceProperty {
   const char *name;
@@ -83,20 +83,22 @@ struct Placement {
   glm::dvec3 position{0.0};
   /** Degrees: around x first, then y, then z. */
   glm::dvec3 rotation{0.0};
-  /** A mirrored node's is negative along x. */
+  /** Negative along x for a mirrored node. */
   glm::dvec3 scale{1.0};
 
   bool operator==(const Placement &) const = default;
 };
-/** A shear of the matrix is not part of it. */
+/** Decompose a matrix. Its shear is ignored. */
 [[nodiscard]] Placement placement_of(const glm::dmat4 &parent_from_node);
-/** \a parent_from_node with another placement. Only another rotation or scale removes its shear. */
+/**
+ * \a parent_from_node with a new placement. A changed rotation or scale removes the shear; a changed position keeps it.
+ */
 [[nodiscard]] glm::dmat4 placed(const glm::dmat4 &parent_from_node, const Placement &placement);
 
-/** The shadow of a lamp, and what decides which of its settings have an effect. */
+/** The shadow of a lamp, with the values that decide which of its settings have an effect. */
 struct ShadowOfLamp {
   scene::LampKind lamp = scene::LampKind::Point;
-  /** Of lamps without a kind of their own. */
+  /** The kind for lamps without one of their own. */
   scene::ShadowKind scene_kind = scene::ShadowKind::Hard;
   scene::LampShadow shadow{};
 };
@@ -110,15 +112,17 @@ struct TextureLine {
 };
 [[nodiscard]] std::vector<TextureLine> texture_lines(const scene::Scene &scene, const scene::Material &material);
 
-/** For Placement, scene::Node, scene::Lamp, ShadowOfLamp, scene::Camera, scene::Material, scene::World and Settings. */
+/**
+ * The properties of T: Placement, scene::Node, scene::Lamp, ShadowOfLamp, scene::Camera, scene::Material, scene::World
+ * and Settings.
+ */
 template <typename T>
 [[nodiscard]] const Properties<T> &properties();
 
 /**
- * Set the property \a name of \a thing to what \a words say, as scripts do.
- * \return false: \a T has no such property, or it does not apply
- * \throws std::runtime_error where the words are neither as many numbers within the limits nor the text for
- * their absence, or none of the options
+ * Set the property \a name of \a thing from the words of a script. \return false if \a T has no such property or it
+ * does not apply \throws std::runtime_error if \a words are neither the right count of numbers within the limits, nor
+ * the text for absence, nor an option
  */
 template <typename T>
 bool set_property(T &thing, const std::string &name, std::span<const std::string> words);

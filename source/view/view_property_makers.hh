@@ -19,7 +19,7 @@ namespace gnomon::view {
 
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
-/** A value as it is stored. */
+/** Convert a number to the stored type. */
 template <typename Value>
 Value stored(double value)
 {
@@ -49,7 +49,7 @@ NumberProperty<T> number_property(const scene::Description &row, Access access)
   property.group = row.group.empty() ? "" : row.group.data();
   if constexpr (requires(Value value) { value.x; }) {
     property.width = 3;
-    // Radiance has a unit, and colours have none.
+    // Values with three components and a unit are radiance; without a unit they are colours.
     property.is_color = row.unit.empty();
     property.get = [=](const T &thing, int i) { return double(access(thing)[i]) * unit.factor; };
     property.set = [=](T &thing, int i, double value) {
@@ -63,7 +63,7 @@ NumberProperty<T> number_property(const scene::Description &row, Access access)
   return property;
 }
 
-/** A number that may be absent, which is shown as \a absent and then begins with the first of the row. */
+/** A number that may be absent. Absence is shown as \a absent; the initial value is the row's `first`. */
 template <typename T, typename Access>
 NumberProperty<T> optional_number(const scene::Description &row, Access access, const char *absent)
 {
@@ -97,12 +97,12 @@ NumberProperty<T> zero_is_absent(const scene::Description &row, NumberProperty<T
     const double value = get(thing, i);
     return value == 0.0 ? first : value;
   };
-  // 0 is the absence.
+  // 0 means absence, so the smallest value is the row's `first`.
   property.min = property.min == 0.0 ? row.first : property.min;
   return property;
 }
 
-/** Words, of which the first may be \a absent, which is for no value. */
+/** Options from \a words, after \a absent for no value if it is given. */
 inline std::vector<const char *> options_of(const auto &words, const char *absent = nullptr)
 {
   std::vector<const char *> options;
@@ -141,8 +141,8 @@ ChoiceProperty<T> choice_property(const scene::Description &row, Access access, 
 }
 
 /**
- * Adds the rows of \a Part that have a label and whose values are numbers or choices. \a part: returns a reference to
- * the part of a T; \a absent: is shown for a value that is absent
+ * Add properties for the rows of \a Part that have a label and hold numbers or choices. \a part: returns a reference to
+ * the part of a T. \a absent: text for an absent value.
  */
 template <typename Part, typename T, typename PartAccess>
 void add_rows(Properties<T> &made, PartAccess part, const char *absent = nullptr)
@@ -191,7 +191,7 @@ void add_rows(Properties<T> &made, PartAccess part, const char *absent = nullptr
   });
 }
 
-/** The property of \a properties with this name, for what its row does not say. */
+/** The property \a name, for changes that its row does not describe. */
 template <typename Property>
 Property &named(std::vector<Property> &properties, std::string_view name)
 {

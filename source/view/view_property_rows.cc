@@ -16,7 +16,7 @@ namespace gnomon::view {
 
 namespace {
 
-/** A slider below shows 0. */
+/** The slider shows smaller values as 0. */
 constexpr double slider_min = 1e-4;
 
 /** The label in the first column; the next item fills the second. */
@@ -83,7 +83,7 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   std::array<double, 3> values{};
   double largest = 0.0;
   for (int i = 0; i < property.width; i++) {
-    // 0 instead of -0.
+    // Adding 0 turns -0 into 0.
     values[std::size_t(i)] = property.get(thing, i) + 0.0;
     largest = std::max(largest, std::abs(values[std::size_t(i)]));
   }
@@ -103,7 +103,7 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   if (!is_changed) {
     return false;
   }
-  // The others keep every digit.
+  // Numbers that the user does not change keep all digits.
   for (int i = 0; i < property.width; i++) {
     const auto at = std::size_t(i);
     if (values[at] != before[at] && std::isfinite(values[at])) {
@@ -117,19 +117,19 @@ template <typename T>
 bool show_slider(const NumberProperty<T> &property, T &thing)
 {
   double value = property.get(thing, 0);
-  // The smallest value above 0 has as many decimals.
+  // Four decimals suffice for the smallest value above 0.
   const std::string format = value == 0.0 ? property.slider_zero : fmt::format("%.4f {}", property.unit(thing));
   if (!ImGui::SliderScalar(
           "", ImGuiDataType_Double, &value, &property.min, &property.max, format.c_str(),
           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat)) {
     return false;
   }
-  // Where the slider's scale ends.
+  // The lower end of the slider means 0.
   property.set(thing, 0, value < slider_min ? 0.0 : value);
   return true;
 }
 
-/** A box beside the number, without a tick where the number is absent. */
+/** A number with a check box, which is unchecked if the number is absent. */
 template <typename T>
 bool show_optional_number(const NumberProperty<T> &property, T &thing)
 {
@@ -178,7 +178,7 @@ void for_each_property(const T &thing, std::string_view group, Function &&functi
   std::ranges::for_each(properties<T>().numbers, visit);
 }
 
-/** In the order in which they first appear. */
+/** The groups in the order of their first property. */
 template <typename T>
 std::vector<std::string_view> groups()
 {
@@ -251,7 +251,7 @@ bool show_properties(T &thing)
       has_rows = true;
       is_used |= !is_default(property, thing);
     });
-    // What is as usual is folded at first. Later, only a click folds it, and no drag to the usual value.
+    // A header with default values is folded at first. Later, only a click folds it, not a drag to the default.
     if (is_used) {
       ImGui::SetNextItemOpen(true, ImGuiCond_Once);
     }

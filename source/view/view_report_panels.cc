@@ -29,8 +29,8 @@ PanelKey key_of(Document &document, const Viewport &viewport, int layer = 0)
 }
 
 /**
- * The first sample of a picture and the last, also where a limit of error or time ends it, so that the panel takes
- * little of the others' time.
+ * Show the first and the last sample of a picture only, so that the panel costs little time. A limit of error or time
+ * may end the picture.
  */
 bool is_worth_showing(const Viewport &viewport)
 {

@@ -29,7 +29,7 @@ bool contains(const std::string &text, const char *part)
   return !std::ranges::search(text, wanted, is_same).empty() || wanted.empty();
 }
 
-/** Which images a material has, for reading. */
+/** Show the images of a material; they cannot be edited. */
 void show_textures(const scene::Scene &scene, const scene::Material &material)
 {
   const std::vector<TextureLine> lines = texture_lines(scene, material);

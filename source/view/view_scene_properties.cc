@@ -17,7 +17,7 @@ constexpr auto itself = [](auto &thing) -> auto &
   return thing;
 };
 
-/** The next float. */
+/** The next smaller float. */
 double below(float value)
 {
   return double(std::nextafter(value, 0.0F));
@@ -55,7 +55,7 @@ Properties<ShadowOfLamp> make_shadow_properties()
       made, [](auto &of) -> auto & { return of.shadow; }, "as the scene");
   const auto has_shadow = [](const ShadowOfLamp &of) { return kind_of(of) != None; };
   const auto is_exponential = [](const ShadowOfLamp &of) { return kind_of(of) == Esm || kind_of(of) == Evsm; };
-  // A sun is at no distance.
+  // A sun has no distance.
   const auto has_distances = [](const ShadowOfLamp &of) {
     return kind_of(of) != None && of.lamp != scene::LampKind::Sun;
   };
@@ -80,7 +80,7 @@ Properties<ShadowOfLamp> make_shadow_properties()
   return made;
 }
 
-/** A camera is of one kind at a time, and has what files of that kind must have. */
+/** Set the camera's kind and the values that files require for it. */
 void set_camera_kind(scene::Camera &camera, int kind)
 {
   camera.kind = scene::CameraKind(kind);
@@ -107,7 +107,7 @@ Properties<scene::Camera> make_camera_properties()
   NumberProperty<Camera> &far = named(made.numbers, "far");
   far.narrowed = [max = far.max](const Camera &camera) { return Limits{above(camera.near), max}; };
   far.applies = [](const Camera &camera) { return camera.kind == Perspective; };
-  // No orthographic camera sees to infinity.
+  // The far plane of an orthographic camera is finite.
   NumberProperty<Camera> orthographic = far;
   orthographic.absent = nullptr;
   orthographic.applies = [](const Camera &camera) { return camera.kind == Orthographic; };

@@ -75,7 +75,7 @@ Script::Script(const std::filesystem::path &path) : path_(path)
 
 void Script::step(App &app)
 {
-  // One frame to lay out what changed, then until nothing is left to draw.
+  // Draw one frame to lay out the changes, then frames until all pictures are complete.
   if (frames_ > 0) {
     frames_--;
   }

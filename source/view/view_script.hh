@@ -17,15 +17,15 @@ struct ScriptLine {
 };
 
 /**
- * Lines that are not empty. Words are separated by spaces; one with spaces is in double quotes; # begins a comment.
- * \throws std::runtime_error naming the line, where a quote is not closed
+ * Parse the lines that are not empty. Spaces separate words; a word with spaces stands in double quotes; # starts a
+ * comment. \throws std::runtime_error, which names the line, if a quote is not closed
  */
 [[nodiscard]] std::vector<ScriptLine> parse_script(std::string_view text);
 
-/** Commands that do what a person would do. doc/view.md lists them. */
+/** A sequence of commands that operates the window. doc/view.md lists the commands. */
 class Script {
  public:
-  /** \throws std::runtime_error naming the file where it cannot be read, and the line that is no command */
+  /** \throws std::runtime_error, which names the file, and the line if it is not a valid command */
   explicit Script(const std::filesystem::path &path);
 
   /**
@@ -33,7 +33,7 @@ class Script {
    * \throws std::runtime_error naming file, line and reason
    */
   void step(App &app);
-  /** All commands were run, and the pictures that they wait for are complete. */
+  /** Whether all commands were run and all awaited pictures are complete. */
   [[nodiscard]] bool is_done() const
   {
     return next_ == lines_.size() && frames_ == 0 && !waits_ && awaited_.empty();
@@ -43,13 +43,13 @@ class Script {
   std::filesystem::path path_;
   std::vector<ScriptLine> lines_;
   std::size_t next_ = 0;
-  /** To be drawn before the next command. */
+  /** The number of frames to draw before the next command. */
   int frames_ = 0;
-  /** For all pictures to be complete. */
+  /** Waits until all pictures are complete. */
   bool waits_ = false;
-  /** For a message with this text; empty: for none. */
+  /** Text of the message to wait for. Empty: none. */
   std::string awaited_;
-  /** Messages that were awaited, and those before them. */
+  /** Number of messages up to the last awaited one. */
   std::size_t seen_ = 0;
 };
 

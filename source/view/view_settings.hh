@@ -6,7 +6,7 @@
 
 namespace gnomon::view {
 
-/** Of all viewports. */
+/** The settings of all viewports. */
 struct Settings {
   eevee::Settings eevee{};
   render_scene::Display display{};
@@ -16,7 +16,7 @@ struct Settings {
   float budget_ms = 33.0F;
   bool has_texel_density = false;
 
-  /** Those of the window alone. */
+  /** Visit the settings that only the window has. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -55,7 +55,7 @@ constexpr void Settings::for_each_property(Visit &&visit)
                   .sentence = "The pictures are coloured by the texel density of the selected lamp's shadow."}));
 }
 
-/** What the window starts with. */
+/** The settings that the window starts with. */
 [[nodiscard]] inline Settings default_settings()
 {
   Settings settings;
@@ -64,8 +64,9 @@ constexpr void Settings::for_each_property(Visit &&visit)
 }
 
 /**
- * What the engine draws with. With a maximum error, the number of samples is not known before: their order is then one
- * of which any number is spread evenly, and eevee::Settings::sample_count is a maximum that the viewport keeps.
+ * The settings that the engine draws with. With a maximum error, the number of samples is not known before: their order
+ * is then one of which any number is spread evenly, and eevee::Settings::sample_count is a maximum that the viewport
+ * keeps.
  */
 [[nodiscard]] inline eevee::Settings engine_settings(const Settings &settings)
 {

@@ -10,10 +10,10 @@ namespace gnomon::view {
 
 namespace {
 
-/** Filters of percentage-closer filtering: the square ones, and the disk with its lookups. */
+/** Filters of percentage-closer filtering: square kernels, and the disk with its number of lookups. */
 void add_pcf_properties(Properties<Settings> &made)
 {
-  // Widths of the square kernels, and 0 for the disk.
+  // Widths of the square kernels; 0: the disk.
   static constexpr std::array widths = {1, 3, 5, 0};
   ChoiceProperty<Settings> kernel{
       .name = "pcf",

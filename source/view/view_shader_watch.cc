@@ -25,7 +25,7 @@ bool ShaderWatch::has_changed()
   std::map<std::string, fs::file_time_type> times;
   std::error_code error;
   for (fs::recursive_directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
-    // A file that vanishes meanwhile is left out.
+    // Skip a file that was removed during the scan.
     std::error_code file_error;
     const fs::file_time_type time = fs::last_write_time(at->path(), file_error);
     if (!file_error) {

@@ -12,10 +12,10 @@ namespace gnomon::view {
 /** A folder with shader files that are edited while the window is open. */
 class ShaderWatch {
  public:
-  /** \throws std::runtime_error where there is no such folder */
+  /** \throws std::runtime_error if the folder does not exist */
   explicit ShaderWatch(std::filesystem::path folder);
 
-  /** Whether a file has been written, added or removed since the last call; true at the first. */
+  /** Whether a file has been written, added or removed since the last call; true at the first call. */
   [[nodiscard]] bool has_changed();
   [[nodiscard]] const std::filesystem::path &folder() const
   {
@@ -27,7 +27,7 @@ class ShaderWatch {
  private:
   std::filesystem::path folder_;
   bool has_looked_ = false;
-  /** Of the last write of each file. */
+  /** The time of the last write of each file. */
   std::map<std::string, std::filesystem::file_time_type> times_;
 };
 

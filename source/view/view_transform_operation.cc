@@ -14,7 +14,7 @@ namespace gnomon::view {
 namespace {
 
 using std::numbers::pi;
-/** The pointer's distances from a node below it, in pixels, are not used as a factor. */
+/** Smallest distance of the pointer from the node, pixels, that is used to compute a factor. */
 constexpr double distance_min_px = 4.0;
 
 int index_of(TransformAxis axis)
@@ -22,20 +22,20 @@ int index_of(TransformAxis axis)
   return std::max(0, int(axis) - 1);
 }
 
-/** Where on the line through \a position_ws the point is that is nearest to \a ray; metres along \a axis_ws. */
+/** Point of the line through \a position_ws that is nearest to \a ray, in metres along \a axis_ws. */
 double nearest_on_axis(const Ray &ray, const glm::dvec3 &position_ws, const glm::dvec3 &axis_ws)
 {
   const glm::dvec3 to_eye = ray.origin_ws - position_ws;
   const double cosine = glm::dot(axis_ws, ray.direction_ws);
   const double across = 1.0 - cosine * cosine;
-  // An axis along the line of sight: the pointer says nothing about it.
+  // For an axis along the line of sight, the pointer gives no position.
   if (across < 1e-4) {
     return 0.0;
   }
   return (glm::dot(axis_ws, to_eye) - cosine * glm::dot(ray.direction_ws, to_eye)) / across;
 }
 
-/** Where \a ray meets a plane. */
+/** Intersection of \a ray with a plane. */
 glm::dvec3 on_plane(const Ray &ray, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
 {
   const double along = glm::dot(ray.direction_ws, normal_ws);
@@ -43,7 +43,7 @@ glm::dvec3 on_plane(const Ray &ray, const glm::dvec3 &position_ws, const glm::dv
   return ray.origin_ws + distance * ray.direction_ws;
 }
 
-/** In (-pi, pi]. */
+/** The same angle in (-pi, pi]. */
 double wrapped(double angle)
 {
   return std::remainder(angle, 2.0 * pi);
@@ -103,7 +103,7 @@ TransformOperation::TransformOperation(const scene::Scene &scene, scene::Handle<
     const glm::dmat4 &world_from_parent = scene.world_from_node(parent);
     const glm::dmat3 axes(world_from_parent);
     const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
-    // Rounding leaves singular matrices a small determinant.
+    // The determinant of a singular matrix may be slightly above 0 because of rounding.
     if (!(std::abs(glm::determinant(axes)) > 1e-12 * edges)) {
       throw std::runtime_error(fmt::format("node '{}': cannot be moved, as the matrix of its parent has no inverse",
                                            scene.nodes()[node].name));
@@ -160,7 +160,7 @@ std::optional<double> TransformOperation::typed() const
   if (typed_.empty()) {
     return std::nullopt;
   }
-  // A number that has only begun, such as "-", is 0. Its characters are those that type() takes.
+  // An incomplete number such as "-" is 0. The text has only characters that type() accepts.
   double value = 0.0;
   double place = 0.0;
   for (const char character : typed_) {
@@ -193,7 +193,8 @@ glm::dvec3 TransformOperation::way_ws() const
   }
   const double to_eye = glm::dot(axis, map_.towards_eye(position_ws()));
   if (std::abs(to_eye) > along_sight) {
-    // The nearest point of the axis to the pointer's ray is the eye. Up moves away from it instead.
+    // The nearest point of the axis to the pointer's ray is the eye. Therefore moving the pointer up moves the node
+    // away from the eye.
     const double up_m = (start_pointer_.y - pointer_.y) * map_.metres_per_pixel(position_ws());
     return (to_eye > 0.0 ? -up_m : up_m) * axis;
   }
@@ -211,7 +212,7 @@ double TransformOperation::angle() const
   if (const std::optional<double> degrees = typed()) {
     return *degrees * pi / 180.0;
   }
-  // Around an axis that points away from the eye, the scene turns clockwise.
+  // A positive rotation around an axis that points away from the eye is clockwise on the screen.
   return glm::dot(rotation_axis_ws(), map_.towards_eye(position_ws())) >= 0.0 ? pointer_angle_ : -pointer_angle_;
 }
 
@@ -236,7 +237,7 @@ glm::dmat4 TransformOperation::parent_from_node() const
     case TransformKind::Scale: world = scaled(start_ws_, transform_, factor()); break;
   }
   glm::dmat4 result = parent_from_world_ * world;
-  // Exactly affine, whatever rounding does.
+  // Remove rounding errors from the last row: the matrix is affine.
   for (int column = 0; column < 4; column++) {
     result[column][3] = column == 3 ? 1.0 : 0.0;
   }

@@ -12,10 +12,13 @@ namespace gnomon::view {
 
 enum class TransformKind { Move, Rotate, Scale };
 
-/** All: in the plane of the picture, around the line of sight, or along all axes. */
+/**
+ * Constraint of a transform. All: move in the picture's plane, rotate around the line of sight, or scale along all
+ * axes.
+ */
 enum class TransformAxis { All, X, Y, Z };
 
-/** Of the axes: those of the world, or of the node. */
+/** The axes of a transform: those of the world, or of the node. */
 enum class Orientation { World, Local };
 
 struct Transform {
@@ -26,25 +29,31 @@ struct Transform {
   bool operator==(const Transform &) const = default;
 };
 
-/** Cosine to the line of sight above which an axis is too short on the screen for the pointer to follow it. */
+/**
+ * Cosine of the angle between an axis and the line of sight. Above it, the axis is too short on the screen to drag
+ * along.
+ */
 inline constexpr double along_sight = 0.97;
 
-/** Unit vector of an axis of the node. All stands for X. An axis of the node that has no length is the world's. */
+/** Unit vector of an axis of the node. All stands for X. The world's axis replaces a node's axis of length 0. */
 [[nodiscard]] glm::dvec3 axis_ws(const glm::dmat4 &world_from_node, TransformAxis axis, Orientation orientation);
-/** \a world_from_node, turned around an axis through its position; radians. */
+/** \a world_from_node, rotated around an axis through its position; radians. */
 [[nodiscard]] glm::dmat4 rotated(const glm::dmat4 &world_from_node, const glm::dvec3 &axis_ws, double angle);
-/** \a world_from_node, scaled from its position along the axis of \a transform. The world's axes may shear it. */
+/**
+ * \a world_from_node, scaled about its position along the axis of \a transform. Scaling along a world axis may shear
+ * it.
+ */
 [[nodiscard]] glm::dmat4 scaled(const glm::dmat4 &world_from_node, const Transform &transform, double factor);
 
 /**
- * A node that follows the pointer, or a number that is typed, from begin to end. It changes nothing itself: the matrix
- * is the result so far.
+ * A running transform of a node by the pointer or a typed number. It does not edit the scene; parent_from_node is the
+ * current result.
  */
 class TransformOperation {
  public:
   /**
    * \a map: the picture in which the \a pointer moves, which must stay the same.
-   * \throws std::runtime_error where the matrix of the node's parent has no inverse; scene::StaleHandle
+   * \throws std::runtime_error if the matrix of the node's parent has no inverse; scene::StaleHandle
    */
   TransformOperation(const scene::Scene &scene, scene::Handle<scene::Node> node, const Transform &transform,
                      const PictureMap &map, const glm::dvec2 &pointer);
@@ -57,24 +66,27 @@ class TransformOperation {
   {
     return transform_;
   }
-  /** Where the node was, world space. */
+  /** The node's matrix at the start. */
   [[nodiscard]] const glm::dmat4 &start_ws() const
   {
     return start_ws_;
   }
-  /** Keep to an axis. The one that it keeps to already: of the other orientation, and then to none. */
+  /**
+   * Constrain the transform to an axis. The second call with the same axis selects the other orientation, the third
+   * removes the constraint.
+   */
   void toggle_axis(TransformAxis axis);
   void point(const glm::dvec2 &pointer);
   /**
    * A digit or '.' is appended to the number, '-' changes its sign, '\b' removes the last character. The number is used
    * instead of the pointer: metres along the axis (All: along X), degrees, or a factor.
-   * \return false: no such character; nothing changes
+   * \return false for another character; nothing changes then
    */
   bool type(char character);
 
-  /** Of the node as it is to be. */
+  /** The transform of the node after the operation. */
   [[nodiscard]] glm::dmat4 parent_from_node() const;
-  /** For the user: "Move along X: 1.5 m". */
+  /** Text for the user, such as "Move along X: 1.5 m". */
   [[nodiscard]] std::string text() const;
 
  private:
@@ -97,7 +109,8 @@ class TransformOperation {
   glm::dmat4 start_ws_{1.0};
   glm::dvec2 start_pointer_;
   glm::dvec2 pointer_;
-  /** Of the pointer around the node, radians, counter-clockwise on the screen; more than a turn where it goes around.
+  /** The pointer's angle around the node, radians, counter-clockwise on the screen; more than a turn where it goes
+   * around.
    */
   double pointer_angle_ = 0.0;
   std::string typed_;

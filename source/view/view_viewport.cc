@@ -121,7 +121,7 @@ bool Viewport::draw(Document &document, double budget_seconds)
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     return true;
   }
-  // Noted first: what cannot be drawn is tried again when something changes.
+  // Store the key before drawing: after a failure, drawing is tried again only when the key changes.
   synced_ = key;
   drawn_view_ = view;
   map_ = PictureMap(view, render_scene.origin_ws(), size_px_);

@@ -19,18 +19,18 @@
 
 namespace gnomon::view {
 
-/** A picture of the document's scene in the window: its camera, its engine, and what the pointer does in it. */
+/** A view of the document's scene in the window, with its camera, its engine and its pointer actions. */
 class Viewport {
  public:
-  /** Forget the picture, before the document that it shows is destroyed or leaves its device. */
+  /** Delete the picture; call it before the document is destroyed or leaves its device. */
   void close();
   /** Look through the scene's first camera. */
   void look_at(const Document &document);
-  /** Show what \a camera sees, also after edits of it and its node, until the view is moved. */
+  /** Look through \a camera and follow edits of it and its node, until the user moves the view. */
   void look_through(const Document &document, const scene::PlacedCamera &camera);
-  /** Move to the scene's camera that is looked through, if one is. */
+  /** Update the view from the scene's camera that it follows, if there is one. */
   void follow(const Document &document);
-  /** The camera of the picture: that of the scene that is looked through, or that of `navigation`. */
+  /** The camera of the picture: the scene's camera that it follows, or that of `navigation`. */
   [[nodiscard]] scene::PlacedCamera camera(const Document &document) const;
 
   /**
@@ -39,29 +39,29 @@ class Viewport {
    */
   bool draw(Document &document, double budget_seconds);
   /**
-   * Show the picture as an item of the current window that fills \a size, and let the pointer act on it.
-   * \return whether the pointer is over it
+   * Show the picture as an item of the current ImGui window with \a size, and process the pointer's actions. \return
+   * whether the pointer is over the picture
    */
   bool show(Document &document, glm::vec2 size, bool is_active);
 
-  /** Select what is at a pixel of the picture, from its upper left corner. \pre draw */
+  /** Select the node at a pixel, counted from the picture's upper left corner. \pre draw was called */
   void pick(Document &document, glm::ivec2 pixel_px);
-  /** Let the selected node follow the pointer. \pre draw \throws as TransformOperation */
+  /** Start to transform the selected node with the pointer. \pre draw was called \throws as TransformOperation */
   void begin_transform(Document &document, TransformKind kind);
   /**
    * Drag the handle of the gizmo that is at \a from_px to \a to_px, both pixels as for pick.
-   * \return false: there is no handle \pre draw
+   * \return false if there is no handle \pre draw was called
    */
   bool drag_handle(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px);
-  /** The picture so far: scene-linear, rows from the bottom, four floats each. \pre draw */
+  /** The current picture: scene-linear, rows from the bottom, four floats for each pixel. \pre draw was called */
   [[nodiscard]] std::vector<float> radiance(Document &document);
-  /** What the window shows of it: rows from the bottom, four bytes each. */
+  /** The viewport's pixels in the window: rows from the bottom, four bytes each. */
   [[nodiscard]] std::vector<std::uint8_t> pixels() const
   {
     return canvas_.read();
   }
 
-  /** Of the next draw; at least 1x1. */
+  /** Set the size of the next draw; at least 1x1. */
   void set_size(glm::ivec2 size_px)
   {
     size_px_ = glm::max(size_px, 1);
@@ -70,7 +70,7 @@ class Viewport {
   {
     return size_px_;
   }
-  /** Samples of the picture so far. */
+  /** Number of samples drawn of the current picture. */
   [[nodiscard]] int samples_drawn() const
   {
     return viewport_ ? viewport_->samples_drawn() : 0;
@@ -80,34 +80,36 @@ class Viewport {
   {
     return is_complete_ && !has_failed_;
   }
-  /** RMSE of the picture so far. Empty: not known, or there is no maximum. \see Settings::error_max */
+  /**
+   * Estimated RMSE of the current picture. Empty: not known yet, or no maximum error is set. \see Settings::error_max
+   */
   [[nodiscard]] std::optional<double> error() const
   {
     return error_.value();
   }
-  /** What the last draw with a budget drew; nullptr: the last draw had none. */
+  /** The report of the last draw; nullptr: the draw had no budget. */
   [[nodiscard]] const eevee::BudgetReport *budget_report() const
   {
     return has_budget_ ? &budgeted_->report() : nullptr;
   }
-  /** nullptr: nothing was drawn yet. */
+  /** nullptr: no picture was drawn yet. */
   [[nodiscard]] draw::Viewport *viewport()
   {
     return viewport_.get();
   }
 
   Navigation navigation;
-  /** Nothing: the camera stands. */
+  /** Empty: the camera does not fly. */
   std::optional<Fly> fly;
   std::string engine = "eevee";
-  /** Show lamps, cameras, the outline of what is selected, and the gizmo. */
+  /** Show lamps, cameras, the outline of the selected nodes, and the gizmo. */
   bool has_overlays = true;
 
  private:
-  /** Behind the picture. */
+  /** Background colour behind the picture. */
   static constexpr glm::vec4 backdrop{0.22F, 0.22F, 0.23F, 1.0F};
 
-  /** All that a picture depends on. */
+  /** Key of the picture: all values that it depends on, except the view. */
   struct Key {
     scene::Revision scene = 0;
     std::uint64_t settings = 0;
@@ -117,7 +119,7 @@ class Viewport {
 
     bool operator==(const Key &) const = default;
   };
-  /** All that is drawn over it depends on, beside the scene and the view. */
+  /** Key of the overlays: all values that they depend on, except scene and view. */
   struct OverlayKey {
     bool is_shown = false;
     scene::Handle<scene::Node> selected{};
@@ -128,48 +130,52 @@ class Viewport {
 
     bool operator==(const OverlayKey &) const = default;
   };
-  /** All that the texel density over the picture depends on. */
+  /** Key of the texel density shown over the picture. */
   struct DensityKey {
     /** draw::Viewport::restart_count. */
     std::uint64_t picture = 0;
     glm::ivec2 size_px{0};
-    /** The density is that of the last sample, which shows another point of a lamp with an extent than the first. */
+    /** The density is that of the last sample. Samples of a lamp with an extent use different points of it. */
     bool is_last = false;
     scene::Handle<scene::Node> lamp{};
 
     bool operator==(const DensityKey &) const = default;
   };
   [[nodiscard]] OverlayKey overlay_key(Document &document) const;
-  /** Nothing: none is looked through. */
+  /** Empty: follows no camera. */
   [[nodiscard]] std::optional<scene::PlacedCamera> looked_through(const Document &document) const;
-  /** Draw with \a used, within the budget if there is one and it can. */
+  /** Draw with \a used, within the budget if there is one and the engine supports budgets. */
   void draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target);
-  /** End a picture whose time is over. */
+  /** End a picture that has reached the maximum time. */
   void limit_time(const Document &document, eevee::Engine &eevee);
-  /** With a maximum error: end a picture whose error is small enough, or that has its samples. */
+  /** With a maximum error: end a picture that has reached it, or that has all its samples. */
   void limit_error(const Document &document, eevee::Engine &eevee);
-  /** \a write: writes a picture to a target */
+  /** Read back the picture that \a write writes to a target. */
   [[nodiscard]] std::vector<float> read_written(gpu::Device &device,
                                                 const std::function<void(const draw::Target &)> &write) const;
   // view_viewport_density.cc
-  /** Colour the picture by the texel density of the selected lamp's shadow, if there is one. \pre no preview is shown
+  /**
+   * Colour the picture by the texel density of the selected lamp's shadow, if it has one. \pre the picture is not a
+   * preview
    */
   void draw_density(Document &document, eevee::Engine &eevee, const draw::Target &target);
-  /** The scale of its colours, and whose shadow it is; or why there is none. */
+  /** Show the colour scale and the lamp's name, or the reason why there is no density. */
   void show_density_scale(Document &document, glm::vec2 corner, glm::vec2 size) const;
 
   void draw_overlays(Document &document, const draw::Target &target);
   void show_lamps(Document &document, glm::vec2 corner, glm::vec2 size);
   void take_pointer(Document &document, glm::vec2 corner);
   void take_navigation(bool is_hovered);
-  /** \return whether there is an operation, which the pointer then acts on alone */
+  /** \return whether an operation is running; it then consumes the pointer's input */
   bool take_operation(Document &document);
-  /** At the selected node; nothing: it is not shown. */
+  /** The gizmo at the selected node. Empty: not shown. */
   [[nodiscard]] std::optional<Gizmo> gizmo_of(Document &document) const;
-  /** Where a point is in the picture, as pick counts; nothing: not in it. */
+  /** Pixel of a point, counted as for pick. Empty: outside of the picture. */
   [[nodiscard]] std::optional<glm::vec2> place_of(const glm::dvec3 &position_ws) const;
 
-  /** A node with a camera that is looked through while `navigation` is as that camera has set it. */
+  /**
+   * The node of the camera that the view follows. Following ends when the viewport's navigation differs from this one.
+   */
   struct LookedThrough {
     scene::Handle<scene::Node> node;
     Navigation navigation;
@@ -178,23 +184,23 @@ class Viewport {
   Canvas canvas_;
   std::optional<LookedThrough> looked_through_;
   std::unique_ptr<draw::Viewport> viewport_;
-  /** Of viewport_. Created by the first draw with a budget. */
+  /** Draws viewport_. Created by the first draw with a budget. */
   std::optional<eevee::BudgetedPicture> budgeted_;
   bool has_budget_ = false;
-  /** Of the document's scene; of this viewport alone, as it keeps what its view shows. */
+  /** Draws over the document's scene; not shared between viewports, as it keeps the state of a view. */
   std::optional<overlay::Overlay> overlay_;
   glm::ivec2 size_px_{320, 240};
   Key synced_;
   draw::View drawn_view_;
-  /** Of drawn_view_. */
+  /** The map of drawn_view_. */
   PictureMap map_;
-  /** draw::Viewport::restart_count of the picture, and when it was begun. */
+  /** draw::Viewport::restart_count of the current picture, and its start time. */
   std::uint64_t picture_ = 0;
   std::chrono::steady_clock::time_point started_;
-  /** Of the same picture. */
+  /** The error of the same picture. */
   ErrorEstimate error_;
   OverlayKey overlaid_;
-  /** Of density_. */
+  /** The key of density_. */
   DensityKey density_key_;
   /** \see eevee::Inspection::texel_density */
   std::optional<std::vector<float>> density_;
@@ -203,15 +209,15 @@ class Viewport {
   bool has_failed_ = false;
   /** Whether the pointer has moved since its button went down. */
   bool is_dragged_ = false;
-  /** In the last frame, in any viewport. */
+  /** An operation was running in the last frame, in any viewport. */
   bool had_operation_ = false;
-  /** In pixels, as pick counts. */
+  /** Position of the pointer in pixels, counted as for pick. */
   glm::dvec2 pointer_px_{0.0};
   /** The handle of the gizmo under the pointer. */
   std::optional<TransformAxis> pointed_;
-  /** The document's operation began here. */
+  /** The document's operation began in this viewport. */
   bool is_transforming_ = false;
-  /** It is a handle that is dragged, until the button is released. */
+  /** The drag moves a handle, until the button is released. */
   bool is_handle_dragged_ = false;
 };
 

@@ -57,7 +57,7 @@ void Viewport::show_density_scale(Document &document, glm::vec2 corner, glm::vec
                      IM_COL32(20, 20, 22, 210), 3.0F);
   const glm::vec2 place(low.x + margin, low.y - 2.0F * line - height - margin);
   list.AddText({place.x, place.y}, IM_COL32(235, 235, 235, 255), text.c_str());
-  // From small texels to large ones.
+  // Colours from small to large texels.
   const float top = place.y + line;
   for (int x = 0; x < int(width); x++) {
     const float size_in_pixels = std::pow(eevee::texel_density_max, 2.0F * (float(x) + 0.5F) / width - 1.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the pointer does in a viewport.
+// The pointer in a viewport.
 #include "view_viewport.hh"
 
 #include <imgui.h>
@@ -12,7 +12,7 @@ namespace gnomon::view {
 namespace {
 
 constexpr float lamp_radius_px = 6.0F;
-/** Of a pointer that moves by the picture's height. */
+/** The turn for a pointer that moves by the picture's height, radians. */
 constexpr double orbit_angle = 3.0;
 
 }  // namespace
@@ -128,7 +128,7 @@ void Viewport::take_navigation(bool is_hovered)
   if (!ImGui::IsItemActive() || (io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F)) {
     return;
   }
-  // With Alt, the left button stands for the middle one, as Blender's emulation of three buttons.
+  // Alt with the left button acts as the middle button, as in Blender's emulation of a three-button mouse.
   const bool turns =
       ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (io.KeyAlt && ImGui::IsMouseDown(ImGuiMouseButton_Left));
   is_dragged_ |= turns || ImGui::IsMouseDragging(ImGuiMouseButton_Left);
@@ -147,7 +147,7 @@ void Viewport::take_pointer(Document &document, glm::vec2 corner)
 {
   const ImGuiIO &io = ImGui::GetIO();
   const bool is_hovered = ImGui::IsItemHovered();
-  // Without a pointer, keys begin in the middle.
+  // Without a valid pointer position, transforms start in the middle of the picture.
   pointer_px_ = ImGui::IsMousePosValid() ? glm::dvec2(io.MousePos.x - corner.x, io.MousePos.y - corner.y)
                                          : 0.5 * glm::dvec2(size_px_);
   if (fly) {

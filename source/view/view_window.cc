@@ -20,9 +20,9 @@ namespace {
 /** Debian's fonts-dejavu-core. Without it, the user interface has its own bitmap font. */
 constexpr const char *font_path = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
-/** The driver's function while a loss is injected; nullptr: none is. */
+/** The driver's function while a loss is simulated. nullptr: no loss is simulated. */
 PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_of_driver = nullptr;
-/** Further calls of make_context_anew that fail. */
+/** Number of further calls of make_context_anew that fail. */
 int injected_failures = 0;
 
 std::string glfw_reason()
@@ -40,7 +40,7 @@ Window &window_of(GLFWwindow *window)
 void GLAPIENTRY take_debug_message(GLenum source, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
                                    const GLchar *text, const void *messages)
 {
-  // What a shader's author has written is no error of the program; the device names its file and line.
+  // A mistake in a shader's source is no error of the program; the device names its file and line.
   if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) {
     return;
   }
@@ -122,7 +122,7 @@ void Window::open(glm::ivec2 size_px)
     throw std::runtime_error(fmt::format("view: no window with an OpenGL 4.5 core context: {}", glfw_reason()));
   }
   glfwMakeContextCurrent(window_);
-  // A script need not wait for a screen.
+  // Scripts do not wait for the vertical refresh.
   glfwSwapInterval(is_debug_ ? 0 : 1);
   if (is_debug_) {
     glEnable(GL_DEBUG_OUTPUT);
@@ -255,7 +255,7 @@ void Window::resize(glm::ivec2 size_px)
 
 void Window::set_title(const std::string &title)
 {
-  // Each change is an event, which would end the next wait.
+  // Each change of the title causes an event, which would end the next wait.
   if (title != title_) {
     title_ = title;
     glfwSetWindowTitle(window_, title.c_str());
@@ -270,7 +270,7 @@ bool Window::is_key_down(int key) const
 void Window::capture_pointer(bool is_captured)
 {
   glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-  // A pointer that is not seen points at nothing.
+  // The user interface ignores a hidden pointer.
   int &flags = ImGui::GetIO().ConfigFlags;
   flags = is_captured ? flags | ImGuiConfigFlags_NoMouse : flags & ~ImGuiConfigFlags_NoMouse;
 }

@@ -10,13 +10,13 @@
 #include <string>
 #include <string_view>
 
-/** Arguments of the commands of scripts. All throw std::runtime_error, which names the invalid word. */
+/** Parsers for arguments of script commands. All throw std::runtime_error, which names the invalid word. */
 namespace gnomon::view {
 
-/** Finite, at most 1e12. */
+/** A finite number with an absolute value of at most 1e12. */
 [[nodiscard]] double number(const std::string &word);
 [[nodiscard]] int integer(const std::string &word, int min, int max);
-/** Counted from 0. */
+/** Pixel coordinates, counted from 0. */
 [[nodiscard]] glm::ivec2 pixel(const std::string &x, const std::string &y);
 
 /** The index of \a word among \a names. */

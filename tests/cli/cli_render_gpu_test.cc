@@ -340,7 +340,7 @@ TEST_F(CliRenderTest, OnlyBelowLeavesOutFilesElsewhere)
     EXPECT_EQ(run(std::string("info scene/s.gltf --only-below ") + folder_name).status, 2) << folder_name;
   }
   EXPECT_EQ(status("inside.bin", "--only-below scene/inner"), 1);
-  // What is not a regular file is never opened.
+  // Only regular files are opened.
   ASSERT_EQ(mkfifo((folder / "scene" / "fifo.bin").c_str(), 0666), 0);
   std::filesystem::create_symlink("/dev/zero", folder / "scene" / "zero.bin");
   for (const char *uri : {"fifo.bin", "zero.bin", "inner"}) {

@@ -157,7 +157,7 @@ TEST_F(FrameAllocations, AMovingCameraBelowManyLampsAllocatesNothing)
   }
 }
 
-/** What is recorded anew grows by a factor at a time, and not with each object. */
+/** Storage of a new recording grows by a factor, not with each object. */
 TEST_F(FrameAllocations, APictureAfterAChangeOfSettingsAllocatesNothingForEachObject)
 {
   std::vector<std::uint64_t> counts;

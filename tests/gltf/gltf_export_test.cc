@@ -454,7 +454,7 @@ TEST(GltfExport, AnIndexOfRefractionIsWrittenApartFromTheSpecularColour)
     water.name = "water";
     water.transmission = 1.0F;
     water.ior = ior;
-    // What the importer makes of a specular colour of (1, 0.5, 0.25).
+    // The value that the importer computes for a specular colour of (1, 0.5, 0.25).
     const float root = (ior - 1.0F) / (ior + 1.0F);
     water.specular_color = glm::vec3(1.0F, 0.5F, 0.25F) * (root * root / 0.04F);
     scene::Mesh mesh = triangle("drop", value);

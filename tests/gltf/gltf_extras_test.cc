@@ -252,7 +252,7 @@ TEST(GltfWorld, IsLeftOutWhereItsPictureCannotBeUsed)
     expect_valid(scene);
     EXPECT_FALSE(scene.world());
     EXPECT_WARNING(scene, "scene: its world is left out: " + reason);
-    // It is lit as a scene without a world.
+    // The scene is lit as one without a world.
     EXPECT_TRUE(scene.is_lamp_default);
   };
   const auto expect_refused = [&](const char *name, const std::string &reason) {
@@ -427,7 +427,7 @@ TEST(GltfWorld, TheRotationTurnsAnImageBasedLight)
     const glm::vec3 direction = turn * face_direction(face, 0.5F, 0.5F);
     EXPECT_NEAR(texel_in(*turned.world()->picture, direction).g, linear_of(10 * (face + 1)), 1e-6F) << face;
   }
-  // What was at +X is at -Z after a quarter turn around +Y, as for the rotation of any world.
+  // The content at +X is at -Z after a quarter turn around +Y, as for the rotation of any world.
   const double half = std::sqrt(0.5);
   image_light(builder)["rotation"] = {0, half, 0, half};
   EXPECT_NEAR(texel_in(*import(builder).world()->picture, {0.5F, -0.5F, -1}).g, linear_of(10), 1e-6F);

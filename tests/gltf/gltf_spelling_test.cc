@@ -161,7 +161,7 @@ TEST(GltfSpelling, DataUrisOfEachSpellingAreRead)
   const std::vector<Change> changes{
       [&](const std::string &data) { return escaped(data, "%%%02X"); },
       [&](const std::string &data) { return escaped(data, "%%%02x"); },
-      // Of URLs.
+      // The alphabet for URLs.
       [](std::string data) {
         std::ranges::replace(data, '+', '-');
         std::ranges::replace(data, '/', '_');

@@ -69,7 +69,7 @@ using IsObject = std::function<GLboolean(GLuint name)>;
 struct StateItem {
   std::string name;
   std::function<std::vector<double>()> read;
-  /** Of the name of an object, which is the first value; empty for other values. */
+  /** OpenGL's function that tells whether the first value names an object. Empty if the value is no object. */
   IsObject is_object{};
 };
 

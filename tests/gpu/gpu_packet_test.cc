@@ -36,7 +36,7 @@ class PacketTest : public testing::Test {
   });
 };
 
-/** What a frame makes, and one frame of it. */
+/** The resources of a frame, and the commands that draw it. */
 struct Frame {
   Texture texture;
   Framebuffer framebuffer;

@@ -12,7 +12,7 @@
 
 namespace {
 
-/** What the functions that GTK calls share. */
+/** State shared by the callbacks of GTK. */
 struct Host {
   gnomon::test::EditedDraws draws;
   const char *picture_path;
@@ -55,7 +55,7 @@ catch (const std::exception &error) {
   fail(error.what());
 }
 
-/** What is on the device is destroyed in its context. */
+/** Destroy the resources of the device while its context is current. */
 void unrealize(GtkGLArea *area, gpointer user)
 {
   gtk_gl_area_make_current(area);

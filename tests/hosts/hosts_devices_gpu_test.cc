@@ -51,7 +51,7 @@ class Window {
     const scene::Handle<scene::Node> node = scene_.placed_lamps().front().node;
     scene_.set_transform(node, glm::translate(glm::dmat4(1), {0.3, 0, 0}) * scene_.nodes()[node].parent_from_node);
   }
-  /** What unlit draws, and lines over it. */
+  /** Draw with the engine unlit, and lines over its picture. */
   void draw_unlit()
   {
     context_.make_current();

@@ -140,7 +140,7 @@ void expect_restored(const T &value)
   EXPECT_NE(refusal(scene, {}).find("never had it"), std::string::npos) << kind;
   EXPECT_NE(refusal(scene, {7, 1}).find("never had it"), std::string::npos) << kind;
 
-  // What took its place is removed first, and can be restored itself after that.
+  // A thing that took its place must be removed first.
   const Handle<T> c = scene.add(value);
   EXPECT_EQ(c.index, a.index) << kind;
   EXPECT_NE(refusal(scene, a).find("another one has its index"), std::string::npos) << kind;

@@ -91,7 +91,7 @@ TEST(AnisotropicGgxLobe, IsTheRoundOneForEqualAlphas)
       const vec3 to_viewer = direction(0.7F, 2.0F);
       const vec3 half_vector = normalize(to_light + to_viewer);
       const float expected = ggx_lobe(to_light.z, to_viewer.z, half_vector.z, alpha);
-      // Of float, near the centre of the lobe of a small alpha.
+      // Tolerance for rounding of float near the centre of the lobe of a small alpha.
       EXPECT_NEAR(anisotropic_ggx_lobe(to_light, to_viewer, half_vector, vec2(alpha)), expected, 1e-4F * expected);
     }
   }

@@ -170,7 +170,7 @@ TEST_F(ViewTransformTest, TurnsKeepThePositionAndGoAroundTheAxisThatIsAskedFor)
 
 TEST_F(ViewTransformTest, AroundTheNodeThePointerTurnsItAsItIsSeenAlsoByMoreThanATurn)
 {
-  // What is up in the picture goes to the left.
+  // A point above the centre of the picture moves to the left.
   const glm::dvec2 center = *map.pixel_of(glm::dvec3(world()[3]));
   TransformOperation operation = begin({TransformKind::Rotate}, center + glm::dvec2(50, 0));
   const int steps = 36 + 9;

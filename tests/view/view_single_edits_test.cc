@@ -190,7 +190,7 @@ std::vector<Edit> single_edits(const Document &document)
   return edits;
 }
 
-/** What a scene is, by names: values of properties, and positions of vertices in world space. */
+/** The content of a scene by names: values of properties, and positions of vertices in world space. */
 using Content = std::map<std::string, double>;
 
 template <typename T>

@@ -38,7 +38,7 @@ def light_of(lamp):
         factors, factor, remark = emission_of_nodes(lamp)
         color, energy = tuple(c * f for c, f in zip(color, factors)), energy * factor
         remarks += [remark] if remark else []
-    # Of 4.2.
+    # Blender 4.2 and later have a temperature and an exposure.
     if getattr(lamp, 'use_temperature', False):
         color = tuple(c * f for c, f in zip(color, lamp.temperature_color))
     energy *= 2.0 ** getattr(lamp, 'exposure', 0.0)

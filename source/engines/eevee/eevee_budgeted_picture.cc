@@ -12,7 +12,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** Of one call. Bounds it where samples take no time. */
+/** Most samples of one call, which bound it where samples take no time. */
 constexpr int samples_per_call_max = 64;
 
 std::int64_t pixel_count(glm::ivec2 size_px)
@@ -101,7 +101,7 @@ bool BudgetedPicture::has_samples(const draw::View &view) const
 bool BudgetedPicture::draw(const draw::View &view, const draw::Target &target)
 {
   const bool is_shown = shown_ == viewport_.restart_count() && shown_view_ == view;
-  // Nothing is shown if this fails.
+  // If this fails, no picture is shown.
   shown_.reset();
   try {
     if (is_shown || has_samples(view)) {
@@ -159,7 +159,7 @@ void BudgetedPicture::draw_first(const draw::View &view)
     return;
   }
   draw_part(view, 0, spent());
-  // What transmits light is drawn in one part.
+  // Surfaces that transmit light are drawn in one part.
   if (!has_samples(view)) {
     draw_part(view, draw::Viewport::no_rows_max);
   }

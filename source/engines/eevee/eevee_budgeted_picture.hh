@@ -20,7 +20,7 @@ struct BudgetReport {
     Complete,
   };
   Kind kind = Kind::Preview;
-  /** Size of the picture, and of what is shown. */
+  /** Size of the picture, and of the shown image. */
   glm::ivec2 size_px{0};
   glm::ivec2 drawn_size_px{0};
   /** The edges of the shadows that are shown are divided by it. */
@@ -35,7 +35,7 @@ struct BudgetReport {
   /** Expected time of a whole sample after an edit. Empty: not known. */
   std::optional<double> whole_seconds;
 
-  /** One line: what was lowered, and why. */
+  /** One line that names the lowered quality and the reason. */
   [[nodiscard]] std::string text() const;
 };
 
@@ -105,7 +105,10 @@ class BudgetedPicture {
   bool draw_better(const draw::View &view);
   /** Draw the next part of a sample: its set-up, or \a rows. \a spent_before: counted as a part of the set-up. */
   void draw_part(const draw::View &view, int rows, double spent_before = 0.0);
-  /** Draw the set-up of a sample, or what fits of it. \return false: nothing fits beside what the call has drawn */
+  /**
+   * Draw the set-up of a sample, or the part that fits into the budget. \return false if no part fits beside the work
+   * that the call has done
+   */
   bool draw_setup(const draw::View &view, bool has_drawn);
   void refine(const draw::View &view);
 
@@ -116,7 +119,7 @@ class BudgetedPicture {
   BudgetController controller_;
   double begun_ = 0.0;
   double budget_ = 0.0;
-  /** Of the set-up that has begun. */
+  /** The time of the set-up that has begun. */
   double setup_seconds_ = 0.0;
   /** Created by the first preview; the viewport is destroyed first. */
   std::unique_ptr<Engine> preview_engine_;

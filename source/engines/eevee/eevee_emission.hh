@@ -36,7 +36,7 @@ class SceneEmission {
 
     bool operator==(const Key &) const = default;
   };
-  /** Nothing: not used. */
+  /** Empty: not used. */
   std::optional<Key> seen_;
   /** Scene::revision of the last update. */
   scene::Revision seen_edit_ = 0;

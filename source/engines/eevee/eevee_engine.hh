@@ -157,7 +157,7 @@ class Engine final : public draw::Engine {
   void order_blended(Data &data, const draw::View &view);
   /** Record the film in \a pass: PassList::film_pass or film_sampled_pass. */
   void record_film(draw::Viewport &viewport, draw::Pass &pass);
-  /** Create what adaptive sampling needs, or destroy it. */
+  /** Create the resources of adaptive sampling, or destroy them. */
   void make_adaptive(draw::Viewport &viewport);
   void record_adaptive(draw::Viewport &viewport);
   void record_background(draw::Viewport &viewport);

@@ -40,7 +40,9 @@ struct FramebufferList {
 struct TextureList {
   /** With deferred lighting, it holds the G-buffer before. */
   gpu::Texture radiance;
-  /** Copy of `radiance` before what transmits light is drawn. Created when that is first seen; \see make_behind. */
+  /**
+   * Copy of `radiance` before transmissive surfaces are drawn. Created when the first one is seen; \see make_behind.
+   */
   gpu::Texture behind;
   gpu::Sampler behind_sampler;
   /** Weighted sum of the samples. */
@@ -182,7 +184,7 @@ struct CastersKey {
   bool operator==(const CastersKey &) const = default;
 };
 
-/** What the recording of an object depends on, beside its index. All objects of a mesh are of one kind, or of few. */
+/** Key of the recording of an object, beside its index. All objects of a mesh are of one kind, or of few. */
 struct ObjectKind {
   gpu::BatchRange batch{};
   /** The groups that have calls of the objects: no more than one in each of five passes. */
@@ -192,7 +194,7 @@ struct ObjectKind {
   const gpu::Shader *blend_shader = nullptr;
 };
 
-/** What the shadow of a caster depends on, beside its matrix: all casters of a mesh and winding are of one kind. */
+/** Key of the shadow of a caster, beside its matrix: all casters of a mesh and winding are of one kind. */
 struct CasterKind {
   scene::Handle<scene::Mesh> handle;
   /** The call in SharedData::shadow_pass; nullptr: the mesh casts no shadow, because it has no triangles. */
@@ -222,7 +224,7 @@ struct SharedData {
   std::optional<ShadowsKey> synced;
   /** Increased by each sync of the lamps. */
   std::uint64_t revision = 0;
-  /** Of the scene, at the last sync of the lamps. */
+  /** The scene's bounds at the last sync of the lamps. */
   scene::Bounds bounds_ws;
   /** Increased when the reach of a light, or the order of the lights, changes. */
   std::uint64_t reaches_revision = 0;
@@ -243,7 +245,7 @@ struct SharedData {
   gpu::Texture ltc_table;
   /** Empty without Feature::Multiscatter. */
   gpu::Texture multiscatter_table;
-  /** Of both tables. */
+  /** The sampler of both tables. */
   gpu::Sampler table_sampler;
   /** Empty without a world. */
   WorldResources world;
@@ -285,11 +287,11 @@ struct BlendedObject {
 /** A drawable object whose material transmits light. */
 struct TransmissiveObject {
   draw::ObjectIndex object = draw::object_identity;
-  /** It is in PassList::blend_pass; otherwise in transmission_pass. */
+  /** True: the object is in PassList::blend_pass. False: in transmission_pass. */
   bool is_blended = false;
 };
 
-/** What the order of blended objects depends on. */
+/** Key of the order of blended objects. */
 struct BlendOrderKey {
   /** \see render_scene::eye_of */
   glm::vec4 eye_ws{0.0F};
@@ -349,7 +351,7 @@ struct StorageList {
   Feature material_features = Feature::None;
   /** The material of at least one drawable object has a surface function. */
   bool has_surface_functions = false;
-  /** Of the recorded passes. \see Engine::is_scene_deferred */
+  /** The mode of the recorded passes. \see Engine::is_scene_deferred */
   bool is_deferred = false;
   /** Entry of light_block of the light that is being probed. */
   int probed_light = 0;
@@ -430,7 +432,7 @@ struct Data final : draw::EngineViewportData {
   std::unique_ptr<PassList> psl;
   StorageList stl;
   AdaptiveSampling adaptive;
-  /** Of the view that was recorded last. */
+  /** The visible objects of the view that was recorded last. */
   draw::VisibleObjects visible;
   Timing timing;
   DepthFeedback depth_feedback;
@@ -461,7 +463,7 @@ struct Data final : draw::EngineViewportData {
 /** Create TextureList::behind, with as many mip levels as the materials need. */
 void make_behind(Data &data, const draw::Viewport &viewport);
 
-/** Bind what a program that lights surfaces reads, beside the textures of the material. */
+/** Bind the resources that a program with lighting reads, except the textures of the material. */
 void bind_lit(draw::ShadingGroup &group, Data &data);
 
 }  // namespace gnomon::eevee

@@ -47,7 +47,7 @@ void update_film_weights(FrameSample &sample)
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
 }
 
-/** What steps before the transmission of light draw: all of the picture, where that reads other pixels. */
+/** The region that steps before the transmission of light draw: all of the picture, where that reads other pixels. */
 static gpu::Rectangle read_region(const FrameSample &sample)
 {
   return sample.data.is_transmission_seen ? gpu::Rectangle() : sample.viewport.part_region();

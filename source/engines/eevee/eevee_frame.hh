@@ -60,8 +60,9 @@ struct FrameStep {
   /** EachSample: drawn with each sample of the picture. EachTarget: drawn with each draw that has a target. */
   enum class When { EachSample, EachTarget } when;
   /**
-   * Of a sample that is drawn in parts. First: with its first part. Rows: with each part, the rows of which it draws,
-   * if any. Each: with each part, because another viewport may have drawn between two parts. Last: after all rows.
+   * The time of a step in a sample that is drawn in parts. First: with its first part. Rows: with each part, the rows
+   * of which it draws, if any. Each: with each part, because another viewport may have drawn between two parts. Last:
+   * after all rows.
    */
   enum class Part { First, Rows, Each, Last } part;
   /** Decides whether the step is drawn. Called before each sample or target. */

@@ -23,7 +23,7 @@ enum class LampShading {
   Point,
 };
 
-/** For messages: the first ten of \a names in quotes, and the number of the others. */
+/** Text for messages: the first ten of \a names in quotes, and the number of the others. */
 [[nodiscard]] std::string listed(std::span<const std::string> names);
 
 /** The lamp in the layout of the shaders, without its shadow. SceneShadows::sync writes the members of the shadow. */

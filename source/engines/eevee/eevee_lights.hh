@@ -36,7 +36,7 @@ struct ViewClusters {
   std::optional<Key> made;
   gpu::Buffer block;
   gpu::Texture texture;
-  /** Of `texture`. Programs read it by reference, because its size follows the view. */
+  /** The binding of `texture`. Programs read it by reference, because its size follows the view. */
   draw::TextureBinding binding;
 };
 
@@ -45,7 +45,7 @@ struct ViewClusters {
  * the lights of the last sync.
  */
 void make_lights(Data &data, gpu::Device &device, const Settings &settings, Feature read);
-/** Bind what programs read of lights. */
+/** Bind the resources of lights that programs read. */
 void bind_lights(draw::ShadingGroup &group, const Data &data);
 /** The entry in `light_block` of \a light, which is an index in Lamps::lights. \a entry: that with LightClusters. */
 [[nodiscard]] int light_entry(const Data &data, int light, int entry);

@@ -99,7 +99,7 @@ std::vector<glm::vec4> render_lamp_layer(SceneRenderer &renderer, const scene::P
   return sum;
 }
 
-/** Add what one sample of the picture sees to \a layers. */
+/** Add one sample of the picture to \a layers. */
 static void add_sample(SceneRenderer &renderer, const draw::View &view, int sample, double weight_sum,
                        const SurfaceRequest &request, SurfaceLayers &layers)
 {

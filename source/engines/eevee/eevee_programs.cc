@@ -125,7 +125,7 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
        (has(declaration.features, Feature::AlphaMask) && !has(features, Feature::AlphaMask)))) {
     return false;
   }
-  // Blended casters read what masks read.
+  // Blended casters read the same inputs as masks.
   if (has(features, Feature::OpacityThreshold) && (features & alpha_features) != alpha_features) {
     return false;
   }

@@ -178,8 +178,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
     stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
                                 (stl.material_features & Feature::Specular) | asked_features());
   }
-  // What the programs of some materials read, beyond those of the frame. It is the same for all viewports, as they
-  // share the blocks.
+  // The inputs of the programs of some materials, beyond those of the frame. They are the same for all viewports, as
+  // they share the blocks.
   const Feature read =
       with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)) |
                    (stl.has_surface_functions ? lit_function_features : Feature::None) | asked_features());

@@ -8,7 +8,7 @@
 namespace gnomon::eevee {
 
 /**
- * Whether the G-buffer can hold what the light of a surface depends on: it is opaque and without textures or other
+ * Whether the G-buffer can hold the inputs of a surface's lighting: the surface is opaque and has no textures or other
  * inputs.
  */
 static bool allows_deferred(const scene::Scene &scene, const scene::Mesh &mesh)

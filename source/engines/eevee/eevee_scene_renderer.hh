@@ -78,7 +78,7 @@ class SceneRenderer {
    * picture is complete
    */
   bool draw_within(double budget_seconds, const scene::PlacedCamera &camera, const draw::Target &target = {});
-  /** What the last draw_within drew. \pre draw_within was called */
+  /** The report of the last draw_within. \pre draw_within was called */
   [[nodiscard]] const BudgetReport &budget_report() const
   {
     static const BudgetReport none;

@@ -18,7 +18,7 @@
  */
 namespace gnomon::eevee {
 
-/** What a picture shows where there is no surface. */
+/** The part of a picture where there is no surface. */
 struct Background {
   enum class Kind {
     /** Transparent black. */
@@ -109,9 +109,9 @@ struct Settings {
    */
   float light_threshold = 0.0F;
   /**
-   * The number of lamps with a range from which on pixels visit only the lamps that can reach them, by lists for the
-   * parts of the view. With more than LIGHT_MAX lamps it is always so. The picture does not depend on it, up to
-   * rounding. At least 1.
+   * Use clustered lighting from this many ranged lamps. Pixels then visit only the lamps that can reach their part of
+   * the view. With more than LIGHT_MAX lamps, clustered lighting is always used. The picture does not depend on this
+   * setting, up to rounding. At least 1.
    */
   int clustered_lamps_min = 8;
   /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */

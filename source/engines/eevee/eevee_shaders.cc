@@ -17,7 +17,7 @@ namespace {
 constexpr Feature unlit_features = Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial |
                                    Feature::TargetDepth | Feature::OpacityThreshold;
 
-/** Adds what the code around a surface function reads, which is the same in all programs. */
+/** Adds the bindings that the code around a surface function reads. They are the same in all programs. */
 void add_function_bindings(gpu::ShaderInterface &interface)
 {
   using Binding = gpu::ShaderInterface::Binding;
@@ -134,7 +134,7 @@ gpu::SharedShader ShaderCache::make_with(std::uint64_t function_key, gpu::Device
     return [this, text](std::string_view path) { return path == surface_function_file ? text : files_(path); };
   };
   const gpu::ShaderFiles stand_in = files_with(files_("eevee/eevee_surface_stand_in.glsl"));
-  // Of another program with this function.
+  // The failure of another program with this function.
   std::string known = failure(function_key);
   if (const auto fault = surface_function_fault(function.text)) {
     known = fmt::format("{}:{}: {}", function.file, fault->line, fault->reason);

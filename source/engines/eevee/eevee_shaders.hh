@@ -18,7 +18,7 @@ struct FunctionText {
   /** Differs for all texts that a cache is used with; 0: no function. */
   std::uint64_t key = 0;
   std::string_view text{};
-  /** For messages. */
+  /** Name of the file, for messages. */
   std::string_view file{};
 };
 

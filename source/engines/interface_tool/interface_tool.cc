@@ -33,7 +33,8 @@ Entries eevee_entries()
   return entries;
 }
 
-/** Of an engine whose variants differ by their features alone: the functions are found by the type of \a declarations.
+/** The entries of an engine whose variants differ by their features alone: the functions are found by the type of \a
+ * declarations.
  */
 template <typename Declaration>
 Entries entries_of(std::span<const Declaration> declarations)
@@ -47,7 +48,7 @@ Entries entries_of(std::span<const Declaration> declarations)
   return entries;
 }
 
-/** Nothing: there is no such engine. */
+/** Empty: there is no such engine. */
 Entries entries_of(std::string_view engine)
 {
   if (engine == "eevee") {

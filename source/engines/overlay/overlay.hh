@@ -14,7 +14,7 @@
 #include <optional>
 #include <span>
 
-/** What an editor needs beside a picture: what is under a pixel, a line around what is selected, and lines in the
+/** The additions of an editor to a picture: the object under a pixel, an outline of selected objects, and lines in the
  * scene. */
 namespace gnomon::overlay {
 
@@ -82,7 +82,7 @@ class Overlay {
     gpu::Texture depth;
     gpu::Framebuffer framebuffer;
   };
-  /** What a target with all objects depends on. */
+  /** Key of a target with all objects. */
   struct ObjectsKey {
     draw::View view;
     /** `view` is relative to it. */

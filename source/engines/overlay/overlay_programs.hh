@@ -11,7 +11,7 @@ namespace gnomon::overlay {
 
 enum class ShaderId { Objects, Outline, Lines };
 
-/** What programs have variants for. */
+/** The features for which programs have variants. */
 enum class Feature : std::uint32_t {
   None = 0,
   AlphaMask = 1U << 0,

@@ -110,12 +110,12 @@ struct Data final : draw::EngineViewportData {
   gpu::Sampler nearest;
   SceneBlocks blocks;
   std::optional<draw::Pass> surfaces;
-  /** What lets light through, blended over the surfaces. */
+  /** Surfaces that transmit light, blended over the others. */
   std::optional<draw::Pass> blended_surfaces;
   std::vector<BlendedObject> blended;
   draw::Pass target{"target", gpu::State::WriteColor};
   draw::TargetPass target_pass;
-  /** Of the depth camera. The passes of surfaces read them by reference. \see unlit_depth_camera_lib.glsl */
+  /** Values of the depth camera. The passes of surfaces read them by reference. \see unlit_depth_camera_lib.glsl */
   glm::mat4 depth_clip_from_world{1.0F};
   glm::vec2 depth_tolerance{0.0F};
   PassesKey recorded;

@@ -390,7 +390,7 @@ std::string reason_of(simdjson::error_code error)
   return printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
 }
 
-/** Allocates what the parser writes for a text of this size, which is several times as much as the text. */
+/** Allocate the parser's output buffers for a text of this size. They need several times the size of the text. */
 simdjson::error_code allocate(simdjson::dom::parser &parser, std::size_t size)
 {
   if (const simdjson::error_code error = parser.allocate(size); error != simdjson::SUCCESS) {

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-/** Reads the buffers of a document, and what describes their bytes. Internal to source/gltf. */
+/** Reads the buffers, buffer views and accessors of a document. Internal to source/gltf. */
 namespace gnomon::gltf {
 
 /** Checks indices into the arrays of a document. */

@@ -25,7 +25,7 @@ namespace gnomon::gltf {
 namespace {
 
 constexpr std::size_t face_count = 6;
-/** Of a face. With so many, the picture has 400 MB. */
+/** Most texels of a face. With so many, the picture has 400 MB. */
 constexpr std::uint64_t environment_texel_count_max = std::uint64_t(2048) * 2048;
 
 /** A place on a face: from -1 to 1, to the right and down its image. */

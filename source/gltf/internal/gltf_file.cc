@@ -84,8 +84,8 @@ bool is_glb(ByteSpan bytes)
 }
 
 /**
- * The JSON and BIN chunks of a .glb, in any order. Others are skipped, as glTF requires. Warns about what glTF forbids
- * and does no harm.
+ * The JSON and BIN chunks of a .glb, in any order. Others are skipped, as glTF requires. Warns about harmless
+ * violations of glTF.
  */
 Chunks split_glb(ByteSpan bytes, Warnings &warnings)
 {
@@ -273,8 +273,8 @@ FileBeside file_beside(const UriBase &base, const std::string &what, const std::
   if (base.only_below.empty()) {
     return {base.folder / name, what_file};
   }
-  // The path without links is the one that is read. A path to nothing is refused like one to something, so that a file
-  // cannot find out what there is.
+  // The path without links is the one that is read. A path to a missing file is refused like one to an existing file,
+  // so that a document cannot detect which files exist.
   std::error_code error;
   std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(base.folder / name), error);
   if (error || !is_below(path, base.only_below)) {

@@ -143,7 +143,7 @@ class JsonScanner {
     return ends_.empty() ? '\0' : ends_.back();
   }
 
-  /** What may stand at the place, for messages. */
+  /** The forms that may stand at the place, for messages. */
   [[nodiscard]] std::string wanted() const
   {
     const std::string end_text = std::string("'") + end() + "'";
@@ -207,7 +207,7 @@ class JsonScanner {
     return true;
   }
 
-  /** A number, a literal, or what is neither. */
+  /** Reads a number, a literal, or an invalid word. */
   void read_word(bool is_value)
   {
     const std::size_t first = at_;

@@ -102,7 +102,7 @@ class MaterialReader {
       const double ior = *source_.ior == 0.0 ? 0.0 : clamped_ior(*source_.ior);
       // As a float, as the exporter has it, so that the quotient of both is exactly 1.
       result_.specular_color *= reflectance_ratio(static_cast<float>(ior));
-      // What reflects all light refracts none.
+      // A surface that reflects all light refracts none.
       result_.ior = ior == 0.0 ? result_.ior : static_cast<float>(ior);
     }
   }

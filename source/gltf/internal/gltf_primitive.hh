@@ -71,7 +71,7 @@ class PrimitiveReader {
   /** Number of vertices of the primitive, with repetitions. */
   [[nodiscard]] std::uint32_t corner_count() const;
 
-  /** Replaces places in the sequence of vertices by vertex indices, and removes what cannot be drawn. */
+  /** Replaces places in the sequence of vertices by vertex indices, and removes elements that cannot be drawn. */
   template <typename Element>
   void keep_drawable(std::vector<Element> &elements);
 

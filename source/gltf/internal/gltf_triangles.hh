@@ -33,7 +33,7 @@ struct Losses {
   void report(Warnings &warnings, const std::string &what, scene::Topology topology) const;
 };
 
-/** What primitives of this glTF mode consist of; empty: the mode is unknown. */
+/** The topology of primitives of this glTF mode; empty: the mode is unknown. */
 [[nodiscard]] std::optional<scene::Topology> topology_of(int mode);
 
 /** The triangles of a list, strip or fan of \a count vertices, as positions in that sequence, with glTF's winding. */

@@ -52,7 +52,7 @@ int gl_minified(TextureFilter filter, MipFilter mip)
   return is_linear ? gl_linear_mipmap_linear : gl_nearest_mipmap_linear;
 }
 
-/** What glTF separates, and the importer multiplies. */
+/** Two factors that glTF separates, and the importer multiplies. */
 struct IorAndColor {
   /** Absent: glTF's default of 1.5. */
   std::optional<float> ior;

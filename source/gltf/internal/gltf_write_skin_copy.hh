@@ -27,7 +27,7 @@ struct SkinCopy {
   /** Index in the file of the child; those of the copies of `nodes` follow. */
   int first_index = 0;
 
-  /** Index in the file of what stands for \a node; empty if it is not copied. */
+  /** Index in the file of the node that represents \a node; empty if it is not copied. */
   [[nodiscard]] std::optional<int> index_of(scene::Handle<scene::Node> node) const;
 };
 

@@ -266,7 +266,7 @@ class GlDevice final : public Device {
   /** Returned by framebuffer_of for passes that draw into a host framebuffer. */
   GlFramebuffer host_framebuffer_;
   const GlProgram *program_ = nullptr;
-  /** Of indexed draws, by the state. */
+  /** The primitive of indexed draws, by the state. */
   GLenum primitive_ = GL_TRIANGLES;
   /** Indexed by texture unit: GL_NONE, GL_TEXTURE for a texture of the list, or the target of the bound dummy. */
   std::vector<GLenum> bound_textures_;

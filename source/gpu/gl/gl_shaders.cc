@@ -112,7 +112,7 @@ GLuint GlDevice::load_compiled(const std::vector<std::byte> &compiled)
   if (is_linked(program)) {
     return program;
   }
-  // The binary may come from another driver version. This is not an error, so discard what the driver reported.
+  // The binary may come from another driver version. This is not an error, so discard the driver's report.
   glDeleteProgram(program);
   driver_errors_.clear();
   static_cast<void>(take_gl_errors());

@@ -9,7 +9,7 @@ namespace gnomon::image {
 namespace {
 
 constexpr const char *failure = "cannot be decoded";
-/** Of chunks that are not texels: texts and profiles, which may be compressed. */
+/** Most bytes of a chunk without texels: texts and profiles, which may be compressed. */
 constexpr std::size_t chunk_bytes_max = std::size_t(1) << 24U;
 
 class PngDecoder final : public Decoder {

@@ -30,7 +30,7 @@ class WorldSampler {
     return !(sum_ > 0.0);
   }
   [[nodiscard]] glm::dvec3 radiance(const glm::dvec3 &to_world_ws) const;
-  /** Of sample(), 1/sr. */
+  /** Probability density of sample(), 1/sr. */
   [[nodiscard]] double density(const glm::dvec3 &to_world_ws) const;
   /** For \a u in [0, 1)². \pre not black */
   [[nodiscard]] WorldSample sample(const glm::dvec2 &u) const;
@@ -41,9 +41,9 @@ class WorldSampler {
   [[nodiscard]] double weight(int column, int row) const;
 
   const scene::World &world_;
-  /** Of the picture; 1 by 1 where there is none. */
+  /** The picture's size; 1 by 1 where there is none. */
   glm::ivec2 size_{1};
-  /** Of each row up to each texel, and of rows up to each one. */
+  /** Sums of each row up to each texel, and of rows up to each one. */
   std::vector<double> in_row_;
   std::vector<double> rows_;
   double sum_ = 0.0;

@@ -86,7 +86,7 @@ Changes changes(const Material &a, const Material &b)
 {
   using enum Material::Aspect;
   const Changes changed = property_changes(a, b);
-  // The shadow of what transmits light is as dark as the light's colour behind it.
+  // The shadow of a transmissive surface depends on the colour of the transmitted light.
   const bool same_shadow = (!a.has_transmission() && !b.has_transmission()) ||
                            (same_bytes(a.transmission, b.transmission) && same_bytes(a.thickness, b.thickness) &&
                             same_bytes(a.attenuation_distance, b.attenuation_distance) &&

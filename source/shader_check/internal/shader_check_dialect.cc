@@ -284,7 +284,7 @@ class Reader {
     if (!is_interface(statement)) {
       return;
     }
-    // What follows the qualifiers: a type, or the name of a block; nothing in `layout(local_size_x = 8) in;`.
+    // The word after the qualifiers: a type, or the name of a block; none in `layout(local_size_x = 8) in;`.
     static constexpr std::array<std::string_view, 25> qualifiers = {
         "layout",        "uniform",  "buffer",    "in",           "out",      "flat",      "smooth",
         "noperspective", "centroid", "sample",    "patch",        "readonly", "writeonly", "coherent",

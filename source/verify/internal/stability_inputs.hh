@@ -16,11 +16,11 @@ namespace gnomon::verify {
 
 /** Required treatment of an input by an importer or the engine. */
 enum class Expected {
-  /** It is used, and the resulting values satisfy the contract. */
+  /** The input is used, and the resulting values satisfy the contract. */
   Accepted,
-  /** It is left out or replaced, and a warning or limit names it. */
+  /** The input is left out or replaced, and a warning or limit names it. */
   Reported,
-  /** It is refused by an error of one line that names it. */
+  /** The input is refused by an error of one line that names it. */
   Rejected,
 };
 

@@ -75,7 +75,7 @@ float largest_difference(const glm::vec4 &a, const glm::vec4 &b)
   return std::max({difference.r, difference.g, difference.b, difference.a});
 }
 
-/** Of a pixel and the eight around it: the largest difference that the threshold is compared with. */
+/** The largest difference among a pixel and its eight neighbours. The threshold is compared with it. */
 float relative_difference(const test::Picture &picture, glm::ivec2 pixel)
 {
   glm::vec4 low = picture.at(pixel.x, pixel.y);

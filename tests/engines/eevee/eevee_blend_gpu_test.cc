@@ -203,7 +203,7 @@ class BlendShadowTest : public BlendGpuTest {
     test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.8F))),
                      glm::scale(glm::dmat4(1), glm::dvec3(4)));
   }
-  /** Of the pixels in the middle of the floor, which no pane is before: the mean, and the deviation from it. */
+  /** Mean and deviation of the pixels in the middle of the floor, which no pane covers. */
   struct Seen {
     double mean = 0.0;
     double deviation = 0.0;

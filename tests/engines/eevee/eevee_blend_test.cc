@@ -154,7 +154,8 @@ TEST(OpacityThreshold, CoversATexelAsOftenAsTheOpacitySays)
 
 TEST(OpacityThreshold, IsIndependentForOccludersOneBehindTheOther)
 {
-  // Of light that passes both of two occluders: of a texel over the samples, and of the first sample over texels.
+  // Measure the light that passes both occluders: for each texel over the samples, and for the first sample over the
+  // texels.
   for (std::uint32_t other = 1; other < 4; other++) {
     double squares = 0.0;
     int open_first = 0;

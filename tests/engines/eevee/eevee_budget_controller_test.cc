@@ -101,7 +101,7 @@ TEST(BudgetControllerTest, PlansSettleAndStayWithinTheBudgetForAnyCosts)
           for (const BudgetController::FirstPlan &plan : plans) {
             ASSERT_EQ(plan, plans.front());
           }
-          // What cannot be lowered further may take longer.
+          // Even the lowest level may exceed the budget.
           const bool fits = machine.preview(BudgetController::level_max, 8) <= 0.8 * budget;
           EXPECT_TRUE(!fits || cost(machine, plans.front()) <= 0.95 * budget) << cost(machine, plans.front());
           whole_count += plans.front().is_whole ? 1 : 0;
@@ -240,7 +240,7 @@ TEST(BudgetControllerTest, ThePartsOfShadowsOfACallFitIntoItsRest)
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, 5, true), 1);
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 5, true), 1);
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 5, false), 0);
-  // Of many, a sixteenth.
+  // Of many parts, plan a sixteenth.
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 348, true), 22);
   EXPECT_EQ(controller.plan_rows(0.01, 1.0, 640, 7, 360, true), 7);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the light of emissive surfaces creates and runs, by the backend's names.
+// Resources and passes of the light of emissive surfaces, by their names in the backend.
 #include "eevee_emission.hh"
 #include "eevee_test_scene.hh"
 

@@ -164,7 +164,7 @@ TEST(Multiscatter, OfABlackSpecularColourIsLambertian)
 TEST(MultiscatterColor, OfAWhiteMetalIsOneAndFallsWithEachReflection)
 {
   EXPECT_FLOAT_EQ(shared::multiscatter_color(vec3(1.0F), 1.0F, 0.6F).x, 1.0F);
-  // Of a dark surface, two reflections are left.
+  // On a dark surface, only two reflections contribute.
   const float dark = shared::multiscatter_color(vec3(1e-3F), 1e-3F, 0.6F).x;
   EXPECT_NEAR(dark, 0.4e-6F, 1e-9F);
   EXPECT_FLOAT_EQ(shared::multiscatter_color(vec3(0.0F), 0.0F, 0.6F).x, 0.0F);
@@ -181,7 +181,8 @@ std::size_t bad_light(int count)
     const vec3 view = random.above();
     measure::LampShape lamp{.center = random.any(), .axis_x = random.any()};
     lamp.outline = measure::LampOutline(i % 3);
-    // Of any outline, as a matrix with shear and without area gives it. Round lamps face the shaded point.
+    // Test any outline, also degenerate ones from matrices with shear or without area. Round lamps face the shaded
+    // point.
     lamp.axis_y = i % 16 == 0 ? 2.0 * lamp.axis_x : random.any();
     if (lamp.outline == measure::LampOutline::Round) {
       const dvec3 across = glm::cross(lamp.center, dvec3(0.3, 0.5, 0.9));

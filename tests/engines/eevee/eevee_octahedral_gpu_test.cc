@@ -443,7 +443,7 @@ bool is_at_crease(const glm::dvec3 &direction, double angle)
   return is_at_border(glm::dvec3(direction.x, direction.y, -direction.z), angle);
 }
 
-/** Of the diamond, inside of the map, over which the lower half is folded out. */
+/** Whether \a direction is within \a angle of the diamond at which the map folds out the lower half. */
 bool is_at_fold(const glm::dvec3 &direction, double angle)
 {
   return std::abs(direction.z) < angle;

@@ -201,7 +201,7 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
   EXPECT_GT(shadows, 2);
 }
 
-/** Of a surface with the same light everywhere, a pixel's light is the visible share of its light without shadows. */
+/** On a surface with uniform light, a pixel's light is its light without shadows times the visibility. */
 TEST_F(PictureLayersGpuTest, VisibilityIsTheShareOfTheLightThatArrives)
 {
   scene.edit(ground, [](scene::Material &material) { material.specular = 0.0F; });

@@ -98,7 +98,7 @@ class ShadowsTest : public testing::Test {
   const gpu::Shader &shader = shaders.get(*device, ShaderId::Shadow);
   draw::Pass pass{"casters", gpu::State::WriteDepth};
   std::vector<scene::PlacedLamp> placed;
-  /** Of the next lamp. */
+  /** Index of the next lamp's node. */
   std::uint32_t next_node = 100;
   /** The triangles of each caster, in world space; nullptr: only the boxes are known. */
   const scene::Mesh *mesh = nullptr;

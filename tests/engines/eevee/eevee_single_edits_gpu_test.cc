@@ -196,7 +196,7 @@ TEST_F(SingleEditsGpu, InRandomOrderGiveThePictureOfANewRenderer)
 struct SettingEdit {
   std::string name;
   std::function<void(Settings &)> change;
-  /** What maps and formats that may be kept from pictures before change. 0: nothing. */
+  /** Maximum RMS difference due to maps and formats that are kept from earlier pictures. 0: none. */
   double rms_max = 0.0;
 };
 

@@ -281,7 +281,9 @@ class PenumbraTest : public test::GpuDeviceTest, public testing::WithParamInterf
                                                 glm::dvec3(0.5 * height * edge_m, 0.1 * half_m, 1.0))
                                    : glm::scale(placed, glm::dvec3(0.1)));
   }
-  /** Of the penumbra and the true one: the mean distance from the edge's shadow, weighted by the slope of visibility.
+  /**
+   * Width of the penumbra relative to the true one. The width is the mean distance from the edge's shadow, weighted by
+   * the slope of visibility.
    */
   [[nodiscard]] double width_ratio(const std::vector<float> &visibilities) const
   {

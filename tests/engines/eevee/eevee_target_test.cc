@@ -144,7 +144,7 @@ TEST_F(TargetTest, OnlyATargetWithDepthTakesDepth)
   renderer.draw_sample(camera, target);
   EXPECT_FALSE(has("picture_depth"));
   target.depth.emplace().clip_from_view = glm::perspective(0.8, 1.0, 0.1, 100.0);
-  // Of the same picture: its depth is drawn once, without a sample's offset.
+  // The depth of the same picture is drawn once, without a sample's offset.
   Passes with_depth = sample;
   with_depth["picture_depth"] = 1;
   EXPECT_EQ(passes_of([&] { renderer.draw_sample(camera, target); }), with_depth);

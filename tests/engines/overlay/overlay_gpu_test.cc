@@ -267,9 +267,9 @@ TEST_F(OverlayGpuTest, ObjectsHideLinesBehindThemThatAreNotOnTop)
   EXPECT_GT(middle(lines({line(0.1, false)})), 0.4F) << "before the object";
   EXPECT_GT(middle(lines({line(0.0, false)})), 0.4F) << "on the object";
   EXPECT_GT(middle(lines({line(-0.1, true)})), 0.4F) << "on top";
-  // Of both kinds in one call.
+  // Draw both kinds of lines in one call.
   EXPECT_GT(middle(lines({line(-0.1, true), line(-0.2, false)})), 0.4F);
-  // What is drawn of the objects is as they are now.
+  // The overlay uses the current state of the objects.
   scene.set_transform(square, glm::translate(glm::dmat4(1), {0, 5, 0}));
   EXPECT_GT(middle(lines({line(-0.1, false)})), 0.4F) << "the object has moved";
 }
@@ -296,7 +296,7 @@ TEST_F(OverlayGpuTest, ALineThatBeginsBehindTheEyeIsDrawnFromTheNearPlaneOn)
 TEST_F(OverlayGpuTest, NothingIsMadeWithoutLinesAndLinesOnTopDrawNoObject)
 {
   add_square(0, test::add_material(scene, glm::vec3(0.5F)));
-  // What the target needs.
+  // Drawing without lines creates nothing.
   lines({});
   EXPECT_EQ(device->counters().shaders_made, 0U);
   EXPECT_EQ(device->memory_bytes(), 0U);

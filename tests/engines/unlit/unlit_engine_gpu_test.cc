@@ -251,7 +251,7 @@ TEST_F(UnlitGpuTest, BlendedAndTransmissiveSurfacesCoverTheirPartOfWhatIsBehind)
         expected = glm::mix(expected, pane.color, pane.opacity);
       }
       for (int c = 0; c < 3; c++) {
-        // Of half floats, after each of two blends.
+        // Tolerance for rounding to half floats after each of two blends.
         EXPECT_NEAR(unlit.at(size_px.x / 2, size_px.y / 2)[c], expected[c], 2e-3) << is_transmissive << is_far_first;
       }
       EXPECT_EQ(unlit.at(size_px.x / 2, size_px.y / 2).a, 1.0F);
@@ -346,7 +346,7 @@ TEST_F(UnlitGpuTest, AnEngineThatReadsMoreOfTheMeshesLeavesThePictureOfAnother)
   draw_in(other, unlit);
   draw_in(first, lit);
   EXPECT_EQ(gpu::read_as<glm::vec4>(*device, lit.radiance(first)), before);
-  // What is not drawn any more does not stay.
+  // An object that is no longer drawn leaves the picture.
   scene.edit(test::handle_at(scene.nodes(), 0), [](scene::Node &node) { node.name = "other"; });
   render_scene->update();
   draw_in(first, lit);

@@ -102,7 +102,7 @@ TEST_F(UnlitTest, BadSettingsAreNamed)
   EXPECT_THROW(draw(viewport), gpu::Error);
 }
 
-/** What a host's menu of engines does. */
+/** Actions of a host's menu of engines. */
 TEST_F(UnlitTest, EnginesAreMadeByNameAndSwitchedForAViewport)
 {
   draw::EngineRegistry registry;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the C++ of doc/embedding.md uses and a host declares.
+// Names that the C++ of doc/embedding.md uses and a host declares.
 #pragma once
 
 #include <gnomon/gnomon.hh>
@@ -28,7 +28,7 @@ void progress_bar(double part);
 void status(const std::string &text);
 void show(const gpu::Texture &texture, double texel);
 
-/** Of a function around each piece. */
+/** Parameters of the function around each piece. */
 #define GUIDE_NAMES                                                                                              \
   std::unique_ptr<gpu::Device> &device, scene::Scene &scene, eevee::SceneRenderer &renderer, glm::ivec2 size_px, \
       const scene::PlacedCamera &camera, const scene::PlacedCamera &right_camera, const draw::Target &target,    \

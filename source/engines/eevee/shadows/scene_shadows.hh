@@ -45,7 +45,7 @@ class SceneShadows {
   {
     casters_.add(caster);
   }
-  /** To be called after the last add_caster. */
+  /** Call after the last add_caster. */
   void finish();
   /** Mark all layers as out of date, for example because the shaders changed. */
   void invalidate();

@@ -20,7 +20,7 @@ std::uint64_t fingerprint_of(std::span<const std::byte> bytes)
 
 std::vector<scene::Bounds> changed_bounds(const std::vector<Caster> &before, const std::vector<Caster> &after)
 {
-  // Only what is between equal beginnings and equal ends is sorted: after most edits, little or nothing.
+  // Only the range between equal beginnings and equal ends is sorted. After most edits, it is short or empty.
   std::span<const Caster> old_casters(before);
   std::span<const Caster> new_casters(after);
   const auto first = std::ranges::mismatch(old_casters, new_casters, {}, &Caster::fingerprint, &Caster::fingerprint);

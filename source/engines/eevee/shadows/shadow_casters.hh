@@ -94,7 +94,7 @@ class ShadowCasters {
   {
     casters_.push_back(caster);
   }
-  /** To be called after the last caster. */
+  /** Call after the last caster. */
   void finish();
   /** Forget Caster::mesh and Caster::world_from_object of all casters, which others may change or remove. */
   void forget_meshes();

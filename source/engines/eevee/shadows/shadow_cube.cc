@@ -111,7 +111,7 @@ class CubeTechnique final : public ShadowTechnique {
     std::array<std::uint32_t, 6> within{};
     for (const glm::dvec3 &corner : visible.corners) {
       const glm::dvec3 v = corner - position_ws;
-      // Of a lamp that is shaded as a whole, lookups are offset from the receiver by up to 15 half axes: search radius
+      // Lookups of a lamp that is shaded as a whole are offset from the receiver by up to 15 half axes: search radius
       // in eevee_penumbra_lib.glsl. The difference of two components changes by √2 times the offset.
       const double offset = slot.lamp.extent * std::min(glm::length(v) / slot.near, 15.0);
       const double slack = 1e-5 * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z)) + std::numbers::sqrt2 * offset;

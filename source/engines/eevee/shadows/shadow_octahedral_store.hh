@@ -87,7 +87,7 @@ struct EsmSettings {
 
 /** The request of a lamp for a layer. */
 struct EsmLamp {
-  /** For messages. */
+  /** Name for messages. */
   std::string name;
   /** Maximum distance of casters and receivers, metres, 1e-6 to 1e30. */
   float range = 0.0F;

@@ -24,7 +24,7 @@ struct ShadowLamp {
   std::uint64_t key = 0;
   /** Index in Lamps::lights. */
   int light = 0;
-  /** For messages. */
+  /** Name for messages. */
   std::string name{};
   scene::LampKind kind = scene::LampKind::Point;
   glm::mat4 world_from_lamp{1.0F};

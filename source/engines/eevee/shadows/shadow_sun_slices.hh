@@ -20,7 +20,7 @@ struct SunSlice {
   glm::dvec2 max{0.0};
 };
 
-/** Slices from near to far, and what they leave of the error. */
+/** Slices from near to far, and the remaining error. */
 struct SunSlices {
   std::vector<SunSlice> slices;
   /**

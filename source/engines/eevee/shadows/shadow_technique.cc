@@ -169,7 +169,7 @@ static LayerMask find_caster_layers(const ShadowSlot &slot, LayerMask missing, c
   return all;
 }
 
-/** Note in \a slot what the recording of \a part leaves, of which \a drawn are drawn, and count it. */
+/** Update \a slot after the recording of \a part, and count the layers just recorded. \a drawn: those that it draws. */
 static void note_recorded(ShadowSlot &slot, const LayerPart &part, LayerMask drawn, ShadowCounters &counters)
 {
   const int next_row = part.rows ? part.rows->first + part.rows->count : slot.size_px;

@@ -131,7 +131,7 @@ struct ShadowSlot {
       partial.reset();
     }
   }
-  /** Forget what was recorded and not submitted. */
+  /** Discard recordings that were not submitted. */
   void discard_recorded()
   {
     recorded_drawn = recorded_up_to_date = 0;

@@ -157,7 +157,7 @@ static int rows_of_part(int size_px)
   return std::clamp(layer_part_texels / size_px, 1, size_px);
 }
 
-/** What is recorded next of the layers \a missing: at most \a parts_max parts. */
+/** The part of the layers \a missing that is recorded next: at most \a parts_max parts. */
 static LayerPart next_part(const ShadowSlot &slot, LayerMask missing, int parts_max)
 {
   if (parts_max == Shadows::no_parts_max || !slot.place.technique->has_divisible_layers()) {

@@ -60,7 +60,7 @@ class Shadows {
 
   /** Create the resources for the last SceneShadows::sync, and free those that are no longer needed. */
   void allocate(gpu::Device &device);
-  /** To be called at the start of a picture. Resets ShadowState::drawn_now. */
+  /** Call at the start of a picture. Resets ShadowState::drawn_now. */
   void begin_picture()
   {
     drawn_now_.clear();
@@ -89,7 +89,7 @@ class Shadows {
     has_clusters_ = false;
   }
   /**
-   * To be called after the submission of the last update's list: marks its layers as up to date. Without this call, the
+   * Call after the submission of the last update's list: marks its layers as up to date. Without this call, the
    * next update of any viewport records the same layers again. If the submission is lost later, call
    * SceneShadows::invalidate.
    */
