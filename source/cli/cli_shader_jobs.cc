@@ -86,7 +86,11 @@ class Cache {
     }
     try {
       const json entry = json::from_cbor(*text);
-      ProgramCheck check = from_bytes(entry.at("result").get<std::string>());
+      const auto result = entry.at("result").get<std::string>();
+      if (entry.at("result_hash") != hash_of(result)) {
+        return std::nullopt;
+      }
+      ProgramCheck check = from_bytes(result);
       const auto hashes = entry.at("hashes").get<std::vector<std::string>>();
       bool is_current = hashes.size() == check.files.size();
       for (std::size_t i = 0; i < check.files.size() && is_current; i++) {
@@ -106,7 +110,9 @@ class Cache {
     std::vector<std::string> hashes;
     std::ranges::transform(check.files, std::back_inserter(hashes),
                            [&](const std::string &path) { return content(path); });
-    const std::vector<std::uint8_t> bytes = json::to_cbor(json{{"result", to_bytes(check)}, {"hashes", hashes}});
+    const std::string result = to_bytes(check);
+    const std::vector<std::uint8_t> bytes =
+        json::to_cbor(json{{"result", result}, {"result_hash", hash_of(result)}, {"hashes", hashes}});
     std::error_code error;
     fs::create_directories(folder_, error);
     try {

@@ -173,6 +173,16 @@ TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
     std::filesystem::resize_file(kept, std::filesystem::file_size(kept) / 2);
   }
   EXPECT_EQ(result(""), first) << "damaged entries are written again";
+  const std::string name = "cache/" + entry.filename().string();
+  const std::string whole = read(name);
+  constexpr std::size_t place_count = 16;
+  for (std::size_t i = 0; i < place_count; i++) {
+    std::string damaged = whole;
+    const std::size_t place = i * damaged.size() / place_count;
+    damaged[place] = char(damaged[place] ^ 0x15);
+    write_file(name, damaged);
+    EXPECT_EQ(result(""), first) << "byte " << place << " is damaged";
+  }
 }
 
 TEST_F(ShaderFilesTest, CacheKnowsTheEnginesShaders)
