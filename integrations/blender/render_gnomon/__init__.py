@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Gnomon in Blender: a render engine, and what the exporter of glTF has no word for. doc/from-blender.md describes both."""
+"""Gnomon in Blender: a render engine, and an extension of the glTF exporter. doc/from-blender.md describes both."""
 
 import copy
 import math
@@ -129,7 +129,7 @@ class Export:
         else:
             settings['gltf_nla_strips'] = False
             settings['gltf_export_anim_single_armature'] = False
-            # 4.0 and later.
+            # Blender 4.0 and later have this option.
             settings['gltf_animation_mode'] = 'ACTIVE_ACTIONS'
 
     def report_scene(self):
@@ -240,7 +240,7 @@ class Export:
 
     @staticmethod
     def thickness(mesh, slot_indices):
-        """Of the closed body of the triangles in some material slots, metres; None if it is not closed."""
+        """Mean thickness of the closed body of the triangles in some material slots, metres; None if it is not closed."""
         mesh.calc_loop_triangles()
         positions = numpy.empty(3 * len(mesh.vertices), numpy.float32)
         mesh.vertices.foreach_get('co', positions)
