@@ -18,7 +18,12 @@ namespace gnomon::cli {
 FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
     : options_(std::move(options)), output_(std::move(output))
 {
+  const std::string name = output_.filename().string();
+  const bool has_place = name.find('#') != name.npos;
   if (!is_animated()) {
+    if (has_place) {
+      throw UsageError(fmt::format("-o '{}' has a # for a frame number, which needs --frames", name));
+    }
     return;
   }
   const std::string &text = options_.range;
@@ -29,8 +34,7 @@ FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
   if (first_error != std::errc() || last_error != std::errc() || after_last != end || first_ < 0 || last_ < first_) {
     throw UsageError(fmt::format("--frames '{}' is neither A-B nor A with whole numbers 0 <= A <= B", text));
   }
-  const std::string name = output_.filename().string();
-  if (!name.empty() && count() > 1 && name.find('#') == name.npos) {
+  if (!name.empty() && count() > 1 && !has_place) {
     throw UsageError(fmt::format("-o '{}' has no # for the frame number; use a name such as frame_####.exr", name));
   }
 }
@@ -76,23 +80,68 @@ void FrameSequence::remove_unfinished_files() const
   output::remove_unfinished(output_.parent_path(), names);
 }
 
-void FrameSequence::pose(scene::Scene &scene, int index) const
+void FrameSequence::choose_animations(scene::Scene &scene)
 {
   if (!is_animated()) {
     return;
   }
-  std::vector<std::string> names;
-  for (const scene::Animation &animation : scene.animations) {
-    if (options_.animation.empty() || animation.name == options_.animation) {
-      scene::pose(scene, animation, seconds(index));
-      return;
-    }
-    names.push_back(animation.name);
+  std::set<std::string> names;
+  for (const scene::Animation &one : scene.animations) {
+    names.insert(one.name);
   }
-  throw std::runtime_error(
-      names.empty()
-          ? fmt::format("{}: --frames needs an animation, and the scene has none", scene.path)
-          : fmt::format("{}: no animation '{}'; it has: {}", scene.path, options_.animation, fmt::join(names, ", ")));
+  // Messages of the import about animations that it has left out, or parts of them.
+  std::string faults;
+  for (const std::string &warning : scene.warnings) {
+    faults += warning.starts_with("animation") ? "; " + warning : "";
+  }
+  if (names.empty()) {
+    throw std::runtime_error(fmt::format("{}: --frames needs an animation, and the scene has none{}{}", scene.path,
+                                         faults.empty() ? "" : " that can be played", faults));
+  }
+  std::set<std::string> chosen;
+  for (const std::string &name : options_.animations) {
+    if (names.contains(name)) {
+      chosen.insert(name);
+    }
+    else if (name == "all") {
+      chosen = names;
+    }
+    else {
+      throw std::runtime_error(
+          fmt::format("{}: no animation '{}'; it has: {}{}", scene.path, name, fmt::join(names, ", "), faults));
+    }
+  }
+  std::set<std::string> played;
+  std::set<std::string> left_out;
+  for (const scene::Animation &one : scene.animations) {
+    if (!chosen.empty() && !chosen.contains(one.name)) {
+      continue;
+    }
+    // Names cannot choose between animations of one name.
+    const bool is_same_name = !chosen.empty() && played.contains(one.name);
+    if (scene::join(animation_, one)) {
+      played.insert(one.name);
+    }
+    else if (!is_same_name) {
+      left_out.insert(one.name);
+    }
+  }
+  if (left_out.empty()) {
+    return;
+  }
+  const std::string message =
+      fmt::format("animations that move the same as others before them: {}", fmt::join(left_out, ", "));
+  if (!chosen.empty()) {
+    throw std::runtime_error(fmt::format("{}: --animation names {}", scene.path, message));
+  }
+  scene.warnings.push_back(fmt::format("not played, as --animation names none: {}", message));
+}
+
+void FrameSequence::pose(scene::Scene &scene, int index) const
+{
+  if (is_animated()) {
+    scene::pose(scene, animation_, seconds(index));
+  }
 }
 
 }  // namespace gnomon::cli

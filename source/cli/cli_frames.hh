@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace gnomon::cli {
 
@@ -18,8 +19,8 @@ struct FrameOptions {
   /** From one frame to the next, at least 1. */
   int step = 1;
   double frames_per_second = 24.0;
-  /** Name of the animation; empty: the scene's first. */
-  std::string animation{};
+  /** Names of animations, or "all"; empty: all that animate other things than those before them. */
+  std::vector<std::string> animations{};
   /** Whether to skip frames whose files are complete. */
   bool is_resumed = false;
 };
@@ -27,7 +28,10 @@ struct FrameOptions {
 /** Numbers, times and files of the frames that one command renders. */
 class FrameSequence {
  public:
-  /** \throws UsageError if the range is invalid, or if there are several frames and the output's name has no # */
+  /**
+   * \throws UsageError if the range is invalid, if there are several frames and the output's name has no #, or if it
+   * has one without a range
+   */
   FrameSequence(FrameOptions options, std::filesystem::path output);
 
   /** false: the command renders one picture without an animation. */
@@ -70,7 +74,12 @@ class FrameSequence {
   /** If --resume was given, removes temporary files of frames that a killed process left. */
   void remove_unfinished_files() const;
 
-  /** Poses \a scene at the frame's time. \throws std::runtime_error if the scene does not have the animation */
+  /**
+   * Chooses what pose() plays, and adds a warning to \a scene about animations that are left out. \throws
+   * std::runtime_error that names the reason if there is nothing to play, or if named animations move the same thing
+   */
+  void choose_animations(scene::Scene &scene);
+  /** Poses \a scene at the frame's time. */
   void pose(scene::Scene &scene, int index) const;
 
  private:
@@ -78,6 +87,8 @@ class FrameSequence {
   std::filesystem::path output_;
   int first_ = 0;
   int last_ = 0;
+  /** All that are played, as one. */
+  scene::Animation animation_;
 };
 
 }  // namespace gnomon::cli

@@ -97,10 +97,13 @@ static Picture read_radiance_picture(const Bytes &file)
   return picture;
 }
 
-static Picture read_any_picture(const fs::path &path)
+static Picture read_any_picture(const fs::path &path, const std::string &layer)
 {
-  if (std::optional<Picture> picture = read_exr_picture(path)) {
+  if (std::optional<Picture> picture = read_exr_picture(path, layer)) {
     return std::move(*picture);
+  }
+  if (!layer.empty()) {
+    throw std::runtime_error(fmt::format("has no layer '{}': only EXR files have layers", layer));
   }
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream.tellg();
@@ -117,10 +120,10 @@ static Picture read_any_picture(const fs::path &path)
   return read_coded_picture(file);
 }
 
-Picture read_picture(const fs::path &path)
+Picture read_picture(const fs::path &path, const std::string &layer)
 {
   try {
-    return read_any_picture(path);
+    return read_any_picture(path, layer);
   }
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));

@@ -52,12 +52,14 @@ struct Picture {
 };
 
 /**
- * Reads R, G and B. The picture of an EXR file is that of its display window, black where it has no pixels. The format
- * is that of the first bytes: EXR, PNG, JPEG, WebP or Radiance HDR, or another one that OpenImageIO reads. Integer
- * values are decoded by the sRGB curve. Those of a PNG with alpha are then multiplied by it, so that transparent pixels
- * are black. \throws std::runtime_error naming \a path if it cannot be read, is cut off, or lacks R, G or B.
+ * Reads R, G and B, or Y as grey, of the layer \a layer of an EXR file; empty: the one without a name, or the only one.
+ * The picture of an EXR file is that of its display window, black where it has no pixels. The format is that of the
+ * first bytes: EXR, PNG, JPEG, WebP or Radiance HDR, or another one that OpenImageIO reads. Integer values are decoded
+ * by the sRGB curve. Those of a PNG with alpha are then multiplied by it, so that transparent pixels are black.
+ * \throws std::runtime_error naming \a path if it cannot be read, is cut off, or has no such channels or layer; the
+ * message lists those that it has.
  */
-[[nodiscard]] Picture read_picture(const std::filesystem::path &path);
+[[nodiscard]] Picture read_picture(const std::filesystem::path &path, const std::string &layer = {});
 /** The same for a picture whose size is known. \throws std::runtime_error also for another size. */
 [[nodiscard]] std::vector<glm::vec4> read_exr(const std::filesystem::path &path, glm::ivec2 size_px);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "internal/cli_exr_file.hh"
-#include "internal/cli_picture_formats.hh"
 
 #include "output_file.hh"
 
@@ -11,10 +10,8 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
 #include <ImfThreading.h>
 
 #include <stdexcept>
@@ -28,20 +25,17 @@ using Names = std::vector<std::string>;
 
 /**
  * Adds channels of pixels of \a value_count floats in rows from the bottom: \a names are those of the first values.
- * OpenEXR counts rows from the top, the first being \a first.
+ * OpenEXR counts rows from the top.
  */
 static void add_channels(Imf::FrameBuffer &buffer, const Names &names, std::size_t value_count, char *pixels,
-                         glm::ivec2 size_px, Imath::V2i first)
+                         glm::ivec2 size_px)
 {
   const auto pixel_bytes = std::ptrdiff_t(value_count * sizeof(float));
   const std::ptrdiff_t row_bytes = pixel_bytes * size_px.x;
-  char *top = pixels + row_bytes * (size_px.y - 1);
-  // The address of pixel (0, 0), which may be outside of the picture.
-  const auto origin = reinterpret_cast<std::uintptr_t>(top) - std::uintptr_t(pixel_bytes * first.x) +
-                      std::uintptr_t(row_bytes * first.y);
+  char *origin = pixels + row_bytes * (size_px.y - 1);
   for (std::size_t i = 0; i < names.size(); i++) {
-    buffer.insert(names[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(origin + i * sizeof(float)),
-                                       std::size_t(pixel_bytes), std::size_t(-row_bytes)));
+    buffer.insert(names[i], Imf::Slice(Imf::FLOAT, origin + i * sizeof(float), std::size_t(pixel_bytes),
+                                       std::size_t(-row_bytes)));
   }
 }
 
@@ -106,7 +100,7 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
     }
     // OpenEXR does not write to the pixels.
     char *pixels = const_cast<char *>(reinterpret_cast<const char *>(values.data()));
-    add_channels(buffer, names, value_count, pixels, size_px, {0, 0});
+    add_channels(buffer, names, value_count, pixels, size_px);
   };
   add(alpha == Alpha::Written ? Names{"R", "G", "B", "A"} : Names{"R", "G", "B"}, 4, rgba);
   for (const Layer &layer : layers) {
@@ -117,37 +111,6 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
     add(names, names.size(), layer.values);
   }
   write_exr_file(path, std::move(header), buffer, metadata);
-}
-
-std::optional<Picture> read_exr_picture(const fs::path &path)
-{
-  if (!Imf::isOpenExrFile(path.c_str())) {
-    return std::nullopt;
-  }
-  Imf::InputFile input(path.c_str());
-  const Imath::Box2i window = input.header().dataWindow();
-  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
-  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  const Names names = {"R", "G", "B"};
-  for (const std::string &name : names) {
-    const Imf::Channel *channel = input.header().channels().findChannel(name);
-    if (channel == nullptr) {
-      throw std::runtime_error("has no channels R, G and B");
-    }
-    if (channel->xSampling != 1 || channel->ySampling != 1) {
-      throw std::runtime_error(fmt::format("channel {} has fewer pixels than the picture", name));
-    }
-  }
-  if (!input.isComplete()) {
-    throw std::runtime_error("is cut off");
-  }
-  Picture picture{{edge(window.min.x, window.max.x), edge(window.min.y, window.max.y)}, {}};
-  picture.pixels.assign(std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y), glm::vec4(1.0F));
-  Imf::FrameBuffer buffer;
-  add_channels(buffer, names, 4, reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min);
-  input.setFrameBuffer(buffer);
-  input.readPixels(window.min.y, window.max.y);
-  return picture;
 }
 
 }  // namespace gnomon::cli

@@ -283,9 +283,10 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
   const glm::ivec2 size_px = options.size_px();
-  const FrameSequence frames(options.frames, options.output);
+  FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
+  frames.choose_animations(scene);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
@@ -563,7 +564,8 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   const StopRequests stops;
   scene::Scene scene = start_import(options, stops).get().scene;
   MeasuredScene measured{scene_fingerprint(scene), {}};
-  const FrameSequence frames(options.frames, options.output);
+  FrameSequence frames(options.frames, options.output);
+  frames.choose_animations(scene);
   frames.pose(scene, frames.count() / 2);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   if (!device) {

@@ -320,8 +320,12 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->needs(frames)
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e6));
-  command.add_option("--animation", options.frames.animation, "Name of the animation (default: the first)")
-      ->needs(frames);
+  command
+      .add_option("--animation", options.frames.animations,
+                  "Name of an animation, may be given several times; or all (default: those that animate other things "
+                  "than those before them)")
+      ->needs(frames)
+      ->allow_extra_args(false);
   command
       .add_flag("--resume", options.frames.is_resumed, "Skip frames whose files are complete and have the same size")
       ->needs(frames);

@@ -29,7 +29,11 @@ void add_view(CLI::App &app)
     o->writers.exr = [](const auto &path, glm::ivec2 size_px, std::span<const float> rgba) {
       write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}}, Alpha::Written);
     };
-    o->read_picture = read_world_picture;
+    o->read_picture = [](const std::filesystem::path &path) {
+      scene::WorldPicture picture = read_world_picture(path);
+      static_cast<void>(clamp_radiances(picture));
+      return picture;
+    };
     view::run(*o);
   });
 }

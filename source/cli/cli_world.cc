@@ -20,6 +20,8 @@ void add_world_options(CLI::App &command, WorldOptions &options)
   command.add_option("--world", options.world,
                      "World that lights the scene: an equirectangular HDR or EXR picture, a radiance R,G,B, studio, or "
                      "none (default: the scene's own; studio if the scene has neither lamps nor a world)");
+  command.add_option("--world-layer", options.layer,
+                     "Layer of an EXR file of --world, where it has several and none without a name");
   command.add_option("--world-strength", options.strength, "Factor of the world's radiance")
       ->capture_default_str()
       ->check(CLI::Range(0.0F, 1e6F));
@@ -36,6 +38,9 @@ std::vector<std::string> arguments_of(const WorldOptions &options)
                                         fmt::format("{}", options.rotation_degrees)};
   if (!options.world.empty()) {
     arguments.insert(arguments.end(), {"--world", options.world});
+  }
+  if (!options.layer.empty()) {
+    arguments.insert(arguments.end(), {"--world-layer", options.layer});
   }
   return arguments;
 }
@@ -65,9 +70,9 @@ std::optional<glm::vec3> parse_color(const std::string &text)
   return color;
 }
 
-scene::WorldPicture read_world_picture(const std::filesystem::path &path)
+scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer)
 {
-  const Picture file = read_picture(path);
+  const Picture file = read_picture(path, layer);
   scene::WorldPicture picture{file.size_px.x, file.size_px.y, {}, path.string()};
   picture.texels.reserve(file.pixels.size());
   for (int y = file.size_px.y - 1; y >= 0; y--) {
@@ -102,7 +107,7 @@ scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &op
 {
   try {
     gltf::ImportOptions all = options;
-    all.read_picture = read_world_picture;
+    all.read_picture = [](const std::filesystem::path &picture) { return read_world_picture(picture); };
     return gltf::import_gltf(path, all);
   }
   catch (const gltf::UnknownVariant &unknown) {
@@ -122,13 +127,17 @@ std::string world_text(const scene::World &world)
                      world.color.r, world.color.g, world.color.b, world.strength, glm::degrees(world.rotation));
 }
 
-/** The world that \a option names: a radiance or the path of a picture. */
-static scene::World world_of(const std::string &option)
+/** The world that the options name: a radiance or the path of a picture. */
+static scene::World world_of(const WorldOptions &options, std::vector<std::string> &warnings)
 {
-  if (const std::optional<glm::vec3> color = parse_color(option)) {
+  if (const std::optional<glm::vec3> color = parse_color(options.world)) {
     return {.color = *color};
   }
-  return {.picture = std::make_shared<const scene::WorldPicture>(read_world_picture(option))};
+  scene::WorldPicture picture = read_world_picture(options.world, options.layer);
+  if (const std::string clamped = clamp_radiances(picture); !clamped.empty()) {
+    warnings.push_back(fmt::format("world '{}': {}", options.world, clamped));
+  }
+  return {.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))};
 }
 
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options)
@@ -142,7 +151,7 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
   std::optional<scene::World> world = options.world == "studio" || is_default_studio
                                           ? scene::studio_world(camera.world_from_camera)
                                       : is_default ? scene.world()
-                                                   : world_of(options.world);
+                                                   : world_of(options, scene.warnings);
   if (!world) {
     return false;
   }

@@ -20,6 +20,8 @@ struct WorldOptions {
    * lamps nor a world.
    */
   std::string world;
+  /** The layer of the file; empty: \see read_picture. */
+  std::string layer;
   /** Factor of the world's radiance. */
   float strength = 1.0F;
   float rotation_degrees = 0.0F;
@@ -47,8 +49,11 @@ void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOpti
  */
 [[nodiscard]] scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options = {});
 
-/** An equirectangular picture. \throws std::runtime_error naming \a path, as read_picture */
-[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path);
+/**
+ * An equirectangular picture, whose texels may be negative or infinite (scene::clamp_radiances). \a layer: \see
+ * read_picture. \throws std::runtime_error naming \a path
+ */
+[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer = {});
 
 /** One line for people: its picture, or its radiance. */
 [[nodiscard]] std::string world_text(const scene::World &world);

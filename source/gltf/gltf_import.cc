@@ -8,6 +8,7 @@
 #include "internal/gltf_file.hh"
 #include "internal/gltf_instances.hh"
 #include "internal/gltf_lamp.hh"
+#include "internal/gltf_lamp_units.hh"
 #include "internal/gltf_mesh.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_node_tree.hh"
@@ -19,6 +20,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
@@ -49,7 +51,7 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 21> harmless_extensions{
+constexpr std::array<std::string_view, 22> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_mesh_quantization",   "KHR_materials_variants",
     "KHR_texture_transform",      "KHR_xmp_json_ld",         "KHR_draco_mesh_compression",
@@ -57,6 +59,7 @@ constexpr std::array<std::string_view, 21> harmless_extensions{
     "KHR_animation_pointer",      "KHR_materials_clearcoat", "KHR_materials_sheen",
     "KHR_materials_transmission", "KHR_materials_volume",    "KHR_materials_pbrSpecularGlossiness",
     "EXT_lights_image_based",     "EXT_texture_webp",        "KHR_materials_anisotropy",
+    "KHR_node_visibility",
 };
 
 /** Names of required extensions that are not supported; empty if there are none. */
@@ -106,7 +109,7 @@ class Importer {
         options_(options),
         progress_(progress),
         warnings_(std::move(warnings)),
-        meshes_(file, progress, warnings_, scene_)
+        meshes_(file, options.texture_size_max, progress, warnings_, scene_)
   {
   }
 
@@ -123,10 +126,11 @@ class Importer {
     import_animations(file_, things_, warnings_, scene_);
     scene::deform_meshes(scene_);
     progress_.begin_phase(meshes_.image_count(), 0.95F);
-    meshes_.finish(options_.texture_size_max);
+    meshes_.finish();
     check_anything_kept();
     progress_.begin_phase(1, 1.0F);
     import_world(file_, visible_nodes(), options_.read_picture, warnings_, scene_);
+    convert_lamps(options_.lamp_units, things_, warnings_, scene_);
     add_defaults();
     scene_.warnings = warnings_.messages();
     return std::move(scene_);
@@ -182,11 +186,31 @@ class Importer {
       const glm::dmat4 parent_from_node = matrix_of(
           node, [&] { return node_label(index); }, warnings_);
       const glm::dmat4 world = siblings.world_from_parent * parent_from_node;
+      if (is_skin_alone(node) && (!is_usable(world) || glm::determinant(world) == 0.0)) {
+        import_skin_alone(index, siblings.parent);
+        continue;
+      }
       const Handle<Node> handle =
           import_node(index, siblings.parent, siblings.parent ? parent_from_node : world, world);
       if (!node.children.empty()) {
         stack.push_back({node.children, handle, world});
       }
+    }
+  }
+
+  /** Whether the node has only a skinned mesh, so that its transform has no effect (glTF 2.0, 3.7.3.2). */
+  static bool is_skin_alone(const Model::Node &node)
+  {
+    return node.skin >= 0 && node.mesh >= 0 && !node.instances && node.children.empty() && node.camera < 0 &&
+           node.light < 0;
+  }
+
+  /** Adds the node as a root without a transform, since the inverse of its own cannot be made. */
+  void import_skin_alone(int index, Handle<Node> parent)
+  {
+    const Handle<Node> handle = import_node(index, {}, glm::dmat4(1.0), glm::dmat4(1.0));
+    if (parent && !scene_.is_visible(parent)) {
+      scene_.edit(handle, [](Node &node) { node.is_visible = false; });
     }
   }
 

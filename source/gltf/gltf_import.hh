@@ -3,11 +3,34 @@
 
 #include "scene.hh"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+
+namespace gnomon::gltf {
+
+/** The units of the numbers of lamps of KHR_lights_punctual. */
+enum class LampUnits {
+  /** Candela and lux, as the extension says. A file that looks as if it meant Raw has a warning. */
+  Lumen,
+  /** W/sr and W/m², which exporters call "unitless". */
+  Raw,
+  /** Raw if the file looks like it, with a warning, otherwise Lumen. */
+  Auto,
+};
+
+}  // namespace gnomon::gltf
+
+namespace gnomon::scene {
+
+template <>
+inline constexpr std::array<std::string_view, 3> words<gltf::LampUnits>{"lumen", "raw", "auto"};
+
+}  // namespace gnomon::scene
 
 namespace gnomon::gltf {
 
@@ -45,13 +68,19 @@ using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::pat
 
 struct ImportOptions {
   std::string variant{};
-  /** \see scene::reduced */
+  /**
+   * Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. After
+   * the reduction an edge may have 16384 texels, and all images together 2^29. Before it, an image may have 2^28
+   * texels, and all together 2^32. Images beyond are replaced by stand-ins, with a warning.
+   */
   std::uint32_t texture_size_max = 0;
   /**
    * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
    * below it, after links are resolved. The scene's own file may be elsewhere. Empty: files may be anywhere.
    */
   std::filesystem::path only_below{};
+  /** A file looks raw if it has no world and no other lamps, and all its lamps are far too dim to be seen. */
+  LampUnits lamp_units = LampUnits::Lumen;
   /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
   ReadPicture read_picture{};
   /**
@@ -81,6 +110,12 @@ constexpr void ImportOptions::for_each_property(Visit &&visit)
                                                     .zero = "no limit",
                                                     .sentence = "Most texels along an edge of an image of a material; "
                                                                 "larger ones are reduced. 0: no limit."}));
+  visit(
+      property(&ImportOptions::lamp_units,
+               {.name = "lamp_units",
+                .option = "lamp-units",
+                .sentence = "Numbers of lamps: lumen, candela and lux, as glTF says; raw, W/sr and W/m², of files that "
+                            "were exported unitless; auto, raw where all lamps are far too dim to be seen."}));
 }
 
 /**

@@ -64,11 +64,22 @@ static std::size_t layer_size_bytes(const TextureDesc &desc)
   return std::size_t(desc.width) * std::size_t(desc.height) * std::size_t(texel_size_bytes(desc.format));
 }
 
+static std::size_t level_sizes_bytes(const TextureDesc &desc)
+{
+  std::size_t size = 0;
+  for (int level = 0; level < desc.mip_levels; level++) {
+    size += std::size_t(std::max(desc.width >> level, 1)) * std::size_t(std::max(desc.height >> level, 1)) *
+            std::size_t(texel_size_bytes(desc.format));
+  }
+  return size;
+}
+
 void Device::upload(const Texture &texture, int layer, std::span<const std::byte> texels)
 {
   const TextureDesc &desc = texture.desc();
+  const bool has_all_levels = desc.kind == TextureKind::Flat && texels.size() == level_sizes_bytes(desc);
   const bool has_size = desc.kind == TextureKind::Buffer ? texels.size() <= layer_size_bytes(desc)
-                                                         : texels.size() == layer_size_bytes(desc);
+                                                         : texels.size() == layer_size_bytes(desc) || has_all_levels;
   GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers && has_size,
                 "texture '{}' of format {}: {} bytes to layer {}", desc.name, to_string(desc.format), texels.size(),
                 layer);

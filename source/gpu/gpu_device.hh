@@ -104,7 +104,8 @@ class Device {
   }
   /**
    * Write level 0 of one layer. \a texels: rows from the bottom, tightly packed. TextureKind::Buffer: the first texels;
-   * the rest keep their content. \pre not a texture of the host, here and in the functions below
+   * the rest keep their content. TextureKind::Flat: also all mip levels, one after the other.
+   * \pre not a texture of the host, here and in the functions below
    */
   void upload(const Texture &texture, int layer, std::span<const std::byte> texels);
   /**

@@ -31,28 +31,67 @@ std::string_view take_line(std::string_view &text)
   return line;
 }
 
-/** Removes \a name and a whole number greater than 0 from the start of \a line. 0: \a line starts otherwise. */
-std::uint32_t take_edge(std::string_view &line, std::string_view name)
+/** An axis of the stored order, as "-Y 32" states it. */
+struct Axis {
+  bool is_reversed = false;
+  char name = '\0';
+  std::uint32_t length = 0;
+};
+
+/** Removes an axis from the start of \a line. Its length is 0 if there is none. */
+Axis take_axis(std::string_view &line)
 {
-  std::uint32_t edge = 0;
-  if (line.starts_with(name)) {
-    line.remove_prefix(name.size());
-    const char *end = line.data() + line.size();
-    const auto [after, error] = std::from_chars(line.data(), end, edge);
-    line.remove_prefix(std::size_t(after - line.data()));
-    edge = error == std::errc() ? edge : 0;
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  Axis axis;
+  const bool is_axis = line.size() > 3 && (line[0] == '+' || line[0] == '-') && (line[1] == 'X' || line[1] == 'Y');
+  if (!is_axis) {
+    return axis;
   }
-  return edge;
+  axis.is_reversed = line[0] == '-';
+  axis.name = line[1];
+  line.remove_prefix(2);
+  line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  const auto [after, error] = std::from_chars(line.data(), line.data() + line.size(), axis.length);
+  line.remove_prefix(std::size_t(after - line.data()));
+  axis.length = error == std::errc() ? axis.length : 0;
+  return axis;
 }
 
-/** Least number of bytes that store a row. */
-std::uint64_t row_bytes_min(std::uint64_t width)
+/** Multiplies \a exposure by the numbers of a line of the header, of which one stands for all three. */
+void multiply(std::array<double, 3> &exposure, std::string_view numbers)
 {
-  constexpr std::uint64_t channel_count = 4;
-  const bool has_runs = width >= run_width_min && width <= run_width_max;
-  // A run takes two bytes. Four bytes come before the runs of a row.
-  const std::uint64_t run_count = (width + run_length_max - 1) / run_length_max;
-  return channel_count * (has_runs ? 1 + 2 * run_count : width);
+  std::array<double, 3> factors{};
+  std::size_t count = 0;
+  while (count < factors.size()) {
+    numbers.remove_prefix(std::min(numbers.find_first_not_of(" \t"), numbers.size()));
+    const auto [after, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), factors[count]);
+    if (error != std::errc() || !(factors[count] > 0.0) || !std::isfinite(factors[count])) {
+      break;
+    }
+    numbers.remove_prefix(std::size_t(after - numbers.data()));
+    count++;
+  }
+  if (count != 1 && count != factors.size()) {
+    throw Error("has an EXPOSURE or a COLORCORR that is no number above 0");
+  }
+  for (std::size_t i = 0; i < factors.size(); i++) {
+    exposure[i] *= factors[count == 1 ? 0 : i];
+  }
+}
+
+/** Least number of bytes that store a line of \a length pixels. */
+std::uint64_t line_bytes_min(std::uint64_t length)
+{
+  // A pixel, and another one that repeats it 255 times, and others that repeat it 256 times as often.
+  return length == 1 ? 4 : length <= 256 ? 8 : 12;
+}
+
+/** Rec. 709 from CIE XYZ (IEC 61966-2-1). */
+std::array<double, 3> rgb_of_xyz(const std::array<double, 3> &xyz)
+{
+  return {3.2404542 * xyz[0] - 1.5371385 * xyz[1] - 0.4985314 * xyz[2],
+          -0.9692660 * xyz[0] + 1.8760108 * xyz[1] + 0.0415560 * xyz[2],
+          0.0556434 * xyz[0] - 0.2040259 * xyz[1] + 1.0572252 * xyz[2]};
 }
 
 }  // namespace
@@ -69,19 +108,35 @@ RadianceDecoder::RadianceDecoder(std::span<const unsigned char> file)
     throw Error("is not a Radiance picture");
   }
   for (std::string_view line = take_line(text); !line.empty(); line = take_line(text)) {
-    if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe") {
-      throw Error("has another format than 32-bit_rle_rgbe");
+    const std::size_t equals = line.find('=');
+    const std::string_view key = line.substr(0, equals);
+    const std::string_view value = equals == line.npos ? std::string_view() : line.substr(equals + 1);
+    if (key == "FORMAT") {
+      is_xyz_ = value == "32-bit_rle_xyze";
+      if (!is_xyz_ && value != "32-bit_rle_rgbe") {
+        throw Error("has another format than 32-bit_rle_rgbe and 32-bit_rle_xyze");
+      }
+    }
+    else if (key == "EXPOSURE" || key == "COLORCORR") {
+      multiply(exposure_, value);
     }
   }
   std::string_view line = take_line(text);
-  height_ = take_edge(line, "-Y ");
-  width_ = take_edge(line, " +X ");
-  if (height_ == 0 || width_ == 0 || !line.empty()) {
-    throw Error("does not state its size as -Y HEIGHT +X WIDTH: rows from the top, pixels from the left");
+  const Axis outer = take_axis(line);
+  const Axis inner = take_axis(line);
+  if (outer.length == 0 || inner.length == 0 || outer.name == inner.name || !line.empty()) {
+    throw Error("does not state its size, for example as -Y HEIGHT +X WIDTH");
   }
+  has_columns_ = outer.name == 'X';
+  const Axis &across = has_columns_ ? outer : inner;
+  const Axis &up = has_columns_ ? inner : outer;
+  width_ = across.length;
+  height_ = up.length;
+  is_from_right_ = across.is_reversed;
+  is_from_bottom_ = !up.is_reversed;
   rest_ = file.last(text.size());
   // So that nothing is allocated for a part of a file.
-  if (row_bytes_min(width_) > rest_.size() / height_) {
+  if (line_bytes_min(inner.length) > rest_.size() / outer.length) {
     throw Error("is cut off");
   }
 }
@@ -96,26 +151,27 @@ std::span<const unsigned char> RadianceDecoder::take(std::size_t count)
   return taken;
 }
 
-void RadianceDecoder::read_row(std::span<unsigned char> row)
+void RadianceDecoder::read_line(std::span<unsigned char> line)
 {
+  const std::size_t length = line.size() / 4;
   const std::span<const unsigned char> start = take(4);
-  const bool has_runs = width_ >= run_width_min && width_ <= run_width_max && start[0] == 2 && start[1] == 2 &&
-                        start[2] <= run_length_max;
-  if (!has_runs) {
-    const std::span<const unsigned char> others = take(4 * (std::size_t(width_) - 1));
-    for (std::size_t channel = 0; channel < 4; channel++) {
-      row[channel * width_] = start[channel];
-      for (std::size_t x = 1; x < width_; x++) {
-        row[channel * width_ + x] = others[4 * (x - 1) + channel];
-      }
-    }
+  const bool has_channel_runs = length >= run_width_min && length <= run_width_max && start[0] == 2 && start[1] == 2 &&
+                                start[2] <= run_length_max;
+  if (!has_channel_runs) {
+    read_pixel_runs(start, line);
     return;
   }
-  if (256U * start[2] + start[3] != width_) {
+  if (256U * start[2] + start[3] != length) {
     throw Error("is damaged: a row has another width than the picture");
   }
+  read_channel_runs(line);
+}
+
+void RadianceDecoder::read_channel_runs(std::span<unsigned char> line)
+{
+  const std::size_t length = line.size() / 4;
   for (std::size_t channel = 0; channel < 4; channel++) {
-    std::span<unsigned char> left = row.subspan(channel * width_, width_);
+    std::span<unsigned char> left = line.subspan(channel * length, length);
     while (!left.empty()) {
       const std::size_t code = take(1)[0];
       const bool is_run = code > run_length_max + 1;
@@ -132,6 +188,32 @@ void RadianceDecoder::read_row(std::span<unsigned char> row)
   }
 }
 
+void RadianceDecoder::read_pixel_runs(std::span<const unsigned char> first_pixel, std::span<unsigned char> line)
+{
+  const std::size_t length = line.size() / 4;
+  std::span<const unsigned char> pixel = first_pixel;
+  std::span<const unsigned char> last = first_pixel;
+  unsigned shift = 0;
+  for (std::size_t x = 0; x < length;) {
+    if (x > 0 || shift > 0) {
+      pixel = take(4);
+    }
+    // Pixels of (1, 1, 1) are never stored: their exponent would be larger.
+    const bool is_run = x > 0 && pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1;
+    const std::size_t count = is_run ? std::size_t(pixel[3]) << shift : 1;
+    shift = is_run ? shift + 8 : 0;
+    if (count > length - x || shift > 24) {
+      throw Error("is damaged: a run does not end with its row");
+    }
+    last = is_run ? last : pixel;
+    for (const std::size_t end = x + count; x < end; x++) {
+      for (std::size_t channel = 0; channel < 4; channel++) {
+        line[channel * length + x] = last[channel];
+      }
+    }
+  }
+}
+
 std::vector<float> RadianceDecoder::read_rgb()
 {
   // The exponent e of a value m is that of m 2^(e - 136). With 0, the value is 0.
@@ -139,15 +221,29 @@ std::vector<float> RadianceDecoder::read_rgb()
   for (int e = 1; e < 256; e++) {
     scales[std::size_t(e)] = std::ldexp(1.0F, e - 136);
   }
-  std::vector<float> values;
-  values.reserve(std::size_t(3) * width_ * height_);
-  std::vector<unsigned char> row(std::size_t(4) * width_);
-  for (std::uint32_t y = 0; y < height_; y++) {
-    read_row(row);
-    for (std::size_t x = 0; x < width_; x++) {
-      const float scale = scales[row[3 * std::size_t(width_) + x]];
+  const bool is_plain = !is_xyz_ && exposure_ == std::array<double, 3>{1.0, 1.0, 1.0};
+  const std::size_t line_count = has_columns_ ? width_ : height_;
+  const std::size_t length = has_columns_ ? height_ : width_;
+  std::vector<float> values(std::size_t(3) * width_ * height_);
+  std::vector<unsigned char> line(4 * length);
+  for (std::size_t i = 0; i < line_count; i++) {
+    read_line(line);
+    for (std::size_t k = 0; k < length; k++) {
+      const std::size_t x = has_columns_ ? i : k;
+      const std::size_t y = has_columns_ ? k : i;
+      const std::size_t column = is_from_right_ ? width_ - 1 - x : x;
+      const std::size_t row = is_from_bottom_ ? height_ - 1 - y : y;
+      float *value = &values[3 * (row * width_ + column)];
+      const float scale = scales[line[3 * length + k]];
+      std::array<double, 3> exact{};
       for (std::size_t channel = 0; channel < 3; channel++) {
-        values.push_back(scale * float(row[channel * width_ + x]));
+        value[channel] = scale * float(line[channel * length + k]);
+        exact[channel] = double(value[channel]) / exposure_[channel];
+      }
+      if (!is_plain) {
+        exact = is_xyz_ ? rgb_of_xyz(exact) : exact;
+        // Colours outside of the primaries have negative values.
+        std::ranges::transform(exact, value, [](double one) { return float(std::max(one, 0.0)); });
       }
     }
   }

@@ -3,6 +3,7 @@
 
 #include "image_error.hh"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,16 +15,16 @@ namespace gnomon::image {
 [[nodiscard]] bool is_radiance(std::span<const unsigned char> file);
 
 /**
- * A Radiance picture in memory (Ward, "Real Pixels", Graphics Gems II, 1991): red, green and blue with one exponent, as
- * four bytes a pixel or as runs of each of the four in a row. Rows must be stored from the top and pixels from the
- * left. Runs of whole pixels, which programs wrote until 1991, are not read. Values are those that the file stores: the
- * lines EXPOSURE and COLORCORR of the header are ignored.
+ * A Radiance picture in memory (Ward, "Real Pixels", Graphics Gems II, 1991): three values with one exponent, as four
+ * bytes a pixel, as runs of each of the four in a row, or as runs of whole pixels, which programs wrote until 1991.
+ * Rows or columns may be stored from each side. Values are radiances: those of the file divided by all EXPOSURE and
+ * COLORCORR of the header, and converted from CIE XYZ to the primaries of Rec. 709 where the format is 32-bit_rle_xyze.
  */
 class RadianceDecoder {
  public:
   /**
-   * Reads the header. \a file must outlive the decoder. \throws Error if the header is damaged or states another order
-   * or other primaries, or if the file is too short for the stated size
+   * Reads the header. \a file must outlive the decoder. \throws Error if the header is damaged or states another
+   * format, or if the file is too short for the stated size
    */
   explicit RadianceDecoder(std::span<const unsigned char> file);
 
@@ -40,14 +41,23 @@ class RadianceDecoder {
   [[nodiscard]] std::vector<float> read_rgb();
 
  private:
-  /** Reads a row into \a row: first all values of red, then those of green, blue and the exponent. */
-  void read_row(std::span<unsigned char> row);
+  /** Reads a stored row or column into \a line: first all values of the first channel, then those of the others. */
+  void read_line(std::span<unsigned char> line);
+  void read_channel_runs(std::span<unsigned char> line);
+  void read_pixel_runs(std::span<const unsigned char> first_pixel, std::span<unsigned char> line);
   [[nodiscard]] std::span<const unsigned char> take(std::size_t count);
 
-  /** What has not been read. */
+  /** The bytes that have not been read. */
   std::span<const unsigned char> rest_;
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
+  /** Columns are stored instead of rows. */
+  bool has_columns_ = false;
+  bool is_from_right_ = false;
+  bool is_from_bottom_ = false;
+  bool is_xyz_ = false;
+  /** The factors of the stored values. */
+  std::array<double, 3> exposure_{1.0, 1.0, 1.0};
 };
 
 }  // namespace gnomon::image

@@ -47,15 +47,31 @@ int anisotropy(const gpu::Limits &limits, const scene::Texture &texture)
   return is_linear && !limits.is_software ? std::min(texture_anisotropy, limits.anisotropy_max) : 1;
 }
 
-gpu::Texture make_image(gpu::Device &device, const scene::Image &image, bool is_color)
+/** Whether any texel has alpha. */
+bool is_seen(const scene::Image &image)
+{
+  for (std::size_t i = 3; i < image.texels.size(); i += 4) {
+    if (image.texels[i] != 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::ImageUse use)
 {
   gpu::Texture texture =
       device.create_texture({.name = image.name,
-                             .format = is_color ? gpu::Format::SRGB8A8 : gpu::Format::RGBA8,
+                             .format = use == scene::ImageUse::Data ? gpu::Format::RGBA8 : gpu::Format::SRGB8A8,
                              .width = int(image.width),
                              .height = int(image.height),
                              .mip_levels = int(std::bit_width(std::max(image.width, image.height)))});
   // Rows need not be reversed: v = 0 is the first row both in the scene and on the device.
+  if (use == scene::ImageUse::Coverage && is_seen(image)) {
+    const std::vector<std::uint8_t> levels = coverage_levels(image);
+    device.upload(texture, 0, std::as_bytes(std::span(levels)));
+    return texture;
+  }
   device.upload(texture, 0, std::as_bytes(std::span(image.texels)));
   if (texture.desc().mip_levels > 1) {
     device.generate_mipmaps(texture);
@@ -66,17 +82,17 @@ gpu::Texture make_image(gpu::Device &device, const scene::Image &image, bool is_
 }  // namespace
 
 Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle,
-                           bool is_color)
+                           scene::ImageUse use)
 {
   if (!is_drawable(scene, handle)) {
     if (!white_) {
-      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, false);
+      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, scene::ImageUse::Data);
     }
     return {white_, sampler(device, {}, false)};
   }
   const scene::Texture &texture = scene.textures()[handle];
   const scene::Revision content = scene.images().revision(texture.image, scene::Image::Aspect::Content);
-  std::vector<Entry> &entries = entries_[is_color ? 1 : 0];
+  std::vector<Entry> &entries = entries_[std::size_t(use)];
   if (entries.size() <= texture.image.index) {
     entries.resize(scene.images().index_end());
   }
@@ -85,7 +101,7 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
   const std::uint64_t resource = host_textures_.resource_revision(texture.image);
   if (!entry.texture || entry.handle != texture.image || entry.content != content || entry.host_resource != resource) {
     const scene::Image &image = scene.images()[texture.image];
-    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host)) : make_image(device, image, is_color),
+    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host)) : make_image(device, image, use),
              texture.image, content, resource};
   }
   // A host's texture of one level is incomplete for a sampler that reads others, and looked up as black.
@@ -112,9 +128,9 @@ const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &t
   return sampler;
 }
 
-const gpu::Texture *Images::find(scene::Handle<scene::Image> handle, bool is_color) const
+const gpu::Texture *Images::find(scene::Handle<scene::Image> handle, scene::ImageUse use) const
 {
-  const std::vector<Entry> &entries = entries_[is_color ? 1 : 0];
+  const std::vector<Entry> &entries = entries_[std::size_t(use)];
   const bool is_made =
       handle.index < entries.size() && entries[handle.index].handle == handle && entries[handle.index].texture;
   return is_made ? &entries[handle.index].texture : nullptr;

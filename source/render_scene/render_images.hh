@@ -4,6 +4,7 @@
 #include "render_host_resources.hh"
 
 #include "scene.hh"
+#include "scene_image.hh"
 
 #include "gpu_device.hh"
 
@@ -14,9 +15,8 @@ namespace gnomon::render_scene {
 
 /**
  * The images and samplers of a scene on one device. An image is uploaded, with mip levels, when a pass first reads it,
- * and again after its content has changed. An image that is used both for colours and for data has one texture for each
- * use. Textures with the same sampling settings share a sampler. An image that has a texture of the host is not
- * uploaded.
+ * and again after its content has changed. An image has one texture for each use. Textures with the same sampling
+ * settings share a sampler. An image that has a texture of the host is not uploaded.
  */
 class Images {
  public:
@@ -27,12 +27,12 @@ class Images {
   /**
    * Image and sampler of the texture \a handle; a white texel if the texture is not drawable. The references are valid
    * until the next get() after an edit of the scene's images, or until update().
-   * \a is_color: \see scene::TextureInput
    * \throws gpu::Error if the device cannot create the image
    */
-  Lookup get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle, bool is_color);
-  /** The texture of an image; nullptr if no pass has read the image with this value of \a is_color. */
-  [[nodiscard]] const gpu::Texture *find(scene::Handle<scene::Image> handle, bool is_color = true) const;
+  Lookup get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle, scene::ImageUse use);
+  /** The texture of an image; nullptr if no pass has read the image for this use. */
+  [[nodiscard]] const gpu::Texture *find(scene::Handle<scene::Image> handle,
+                                         scene::ImageUse use = scene::ImageUse::Color) const;
   /** Number of textures that images have on the device. */
   [[nodiscard]] std::size_t count() const;
   /** \see RenderScene::set_host_texture */
@@ -58,11 +58,11 @@ class Images {
     gpu::Texture texture;
     scene::Handle<scene::Image> handle;
     scene::Revision content = 0;
-    /** Of `host_textures_`; 0: the image was uploaded. */
+    /** The number in `host_textures_`; 0: the image was uploaded. */
     std::uint64_t host_resource = 0;
   };
-  /** Indexed by is_color and Handle::index. */
-  std::array<std::vector<Entry>, 2> entries_;
+  /** Indexed by scene::ImageUse and Handle::index. */
+  std::array<std::vector<Entry>, 3> entries_;
   HostResources<scene::Image, gpu::HostTexture> host_textures_;
   gpu::Texture white_;
   /** By the sampler's settings, packed into a number. */

@@ -166,9 +166,9 @@ class RenderScene {
     return meshes_.get(device_, scene_.meshes(), mesh, streams);
   }
   /** \see Images::get */
-  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, bool is_color)
+  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use)
   {
-    return images_.get(device_, scene_, texture, is_color);
+    return images_.get(device_, scene_, texture, use);
   }
   [[nodiscard]] const Meshes &meshes() const
   {

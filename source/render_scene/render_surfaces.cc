@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_surfaces.hh"
 
+#include "scene_image.hh"
+
 #include <algorithm>
 
 namespace gnomon::render_scene {
@@ -28,13 +30,25 @@ MeshStreams streams_of(MaterialClass material_class)
   }
 }
 
+scene::ImageUse use_of(const scene::Scene &scene, const scene::Material &material, const scene::TextureInput &input)
+{
+  const scene::ImageUse use = scene::use_of(material, input);
+  const bool is_opaque = use == scene::ImageUse::Coverage &&
+                         scene.images()[scene.textures()[(material.*input.slot).texture].image].is_opaque;
+  return is_opaque ? scene::ImageUse::Color : use;
+}
+
 TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, MaterialClass material_class)
 {
   const scene::Material &material = scene.material_of(mesh);
   TextureSet set;
   for (std::size_t i = 0; i < input_count(material_class); i++) {
-    const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
-    set[i] = is_drawable(scene, slot.texture) ? slot.texture : scene::Handle<scene::Texture>();
+    const scene::TextureInput &input = scene::texture_inputs[i];
+    const scene::Handle<scene::Texture> texture = (material.*input.slot).texture;
+    if (is_drawable(scene, texture)) {
+      set.textures[i] = texture;
+      set.has_coverage = set.has_coverage || use_of(scene, material, input) == scene::ImageUse::Coverage;
+    }
   }
   return set;
 }
@@ -48,7 +62,11 @@ void bind_textures(draw::ShadingGroup &group, RenderScene &scene, MaterialClass 
 {
   for (std::size_t i = 0; i < input_count(material_class); i++) {
     const scene::TextureInput &input = scene::texture_inputs[i];
-    const auto [image, sampler] = scene.texture(set[i], input.is_color);
+    const bool has_coverage = set.has_coverage && input.slot == &scene::Material::base_color_texture;
+    const scene::ImageUse use = has_coverage     ? scene::ImageUse::Coverage
+                                : input.is_color ? scene::ImageUse::Color
+                                                 : scene::ImageUse::Data;
+    const auto [image, sampler] = scene.texture(set.textures[i], use);
     group.bind_texture(input.name, image, sampler);
   }
 }

@@ -6,12 +6,24 @@
 #include "draw_pass.hh"
 
 #include <array>
+#include <compare>
 
 /** The vertex streams and textures that shading groups need for each MaterialClass. For engines. */
 namespace gnomon::render_scene {
 
-/** The textures of a group, one for each of scene::texture_inputs. An empty handle means that there is no texture. */
-using TextureSet = std::array<scene::Handle<scene::Texture>, scene::texture_inputs.size()>;
+/** The textures of a group, one for each of scene::texture_inputs. */
+struct TextureSet {
+  /** An empty handle means that there is no texture. */
+  std::array<scene::Handle<scene::Texture>, scene::texture_inputs.size()> textures{};
+  /** That of the base colour, whose image has alpha: scene::ImageUse::Coverage. */
+  bool has_coverage = false;
+
+  auto operator<=>(const TextureSet &) const = default;
+};
+
+/** The use of the image of a slot, which is drawable. An image without alpha does not count as coverage. */
+[[nodiscard]] scene::ImageUse use_of(const scene::Scene &scene, const scene::Material &material,
+                                     const scene::TextureInput &input);
 
 /** The vertex streams that shaders of \a material_class read. */
 [[nodiscard]] MeshStreams streams_of(MaterialClass material_class);

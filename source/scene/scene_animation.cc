@@ -7,7 +7,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace gnomon::scene {
 
@@ -101,6 +104,9 @@ std::size_t width_of(std::string_view property)
   return property == with_alpha ? 4 : width;
 }
 
+static constexpr std::array node_tracks = {&AnimatedNode::translation_track, &AnimatedNode::rotation_track,
+                                           &AnimatedNode::scale_track, &AnimatedNode::weights_track};
+
 double Animation::duration() const
 {
   double seconds = 0.0;
@@ -108,15 +114,85 @@ double Animation::duration() const
     seconds = track ? std::max(seconds, double(track->times.back())) : seconds;
   };
   for (const AnimatedNode &node : nodes) {
-    for (const SharedTrack &track :
-         {node.translation_track, node.rotation_track, node.scale_track, node.weights_track}) {
-      extend(track);
+    for (SharedTrack AnimatedNode::*track : node_tracks) {
+      extend(node.*track);
     }
   }
   for (const AnimatedValue &value : values) {
     extend(value.track);
+    extend(value.strength_track);
   }
   return seconds;
+}
+
+namespace {
+
+bool has_same_place(const AnimatedValue &a, const AnimatedValue &b)
+{
+  return a.target == b.target && a.property == b.property && a.slot == b.slot;
+}
+
+/** Whether one of them is a factor of three numbers, and the other the strength that it is multiplied by. */
+bool is_product(const AnimatedValue &a, const AnimatedValue &b)
+{
+  return a.property == "emissive" && has_same_place(a, b) && !a.strength_track && !b.strength_track &&
+         a.track->width != b.track->width;
+}
+
+}  // namespace
+
+void add_value(Animation &animation, AnimatedValue value)
+{
+  for (AnimatedValue &other : animation.values) {
+    if (is_product(other, value)) {
+      const bool is_strength = value.track->width == 1;
+      other.strength_track = is_strength ? value.track : other.track;
+      other.track = is_strength ? other.track : value.track;
+      other.factor = glm::dvec3(1.0);
+      return;
+    }
+  }
+  animation.values.push_back(std::move(value));
+}
+
+bool join(Animation &animation, const Animation &other)
+{
+  std::map<Handle<Node>, std::size_t> places;
+  for (std::size_t i = 0; i < animation.nodes.size(); i++) {
+    places.emplace(animation.nodes[i].node, i);
+  }
+  for (const AnimatedNode &node : other.nodes) {
+    const auto place = places.find(node.node);
+    const auto is_in_both = [&](SharedTrack AnimatedNode::*track) {
+      return node.*track && animation.nodes[place->second].*track;
+    };
+    if (place != places.end() && std::ranges::any_of(node_tracks, is_in_both)) {
+      return false;
+    }
+  }
+  for (const AnimatedValue &value : other.values) {
+    if (std::ranges::any_of(animation.values, [&](const AnimatedValue &one) {
+          return has_same_place(one, value) && !is_product(one, value);
+        })) {
+      return false;
+    }
+  }
+  for (const AnimatedNode &node : other.nodes) {
+    const auto [place, is_new] = places.try_emplace(node.node, animation.nodes.size());
+    if (is_new) {
+      animation.nodes.push_back(node);
+      continue;
+    }
+    for (SharedTrack AnimatedNode::*track : node_tracks) {
+      if (node.*track) {
+        animation.nodes[place->second].*track = node.*track;
+      }
+    }
+  }
+  for (const AnimatedValue &value : other.values) {
+    add_value(animation, value);
+  }
+  return true;
 }
 
 namespace {
@@ -164,6 +240,12 @@ void set_property(Thing &thing, std::string_view property, const glm::dvec4 &val
     else if constexpr (std::is_same_v<Value, glm::vec3>) {
       thing.*row.member = {row.nearest(value.x), row.nearest(value.y), row.nearest(value.z)};
     }
+    else if constexpr (std::is_same_v<Value, glm::vec2>) {
+      thing.*row.member = {row.nearest(value.x), row.nearest(value.y)};
+    }
+    else if constexpr (std::is_same_v<Value, bool>) {
+      thing.*row.member = value.x >= 0.5;
+    }
   });
   if constexpr (std::is_same_v<Thing, Material>) {
     if (property == with_alpha) {
@@ -189,10 +271,25 @@ void pose(Scene &scene, const Animation &animation, double seconds)
       value = glm::dvec4(value.x);
     }
     value = glm::dvec4(animated.factor * glm::dvec3(value), value.w);
+    if (animated.strength_track) {
+      double strength = 1.0;
+      animated.strength_track->evaluate(seconds, {&strength, 1});
+      value *= strength;
+    }
     std::visit(
         [&]<typename T>(Handle<T> handle) {
           if (scene.pool<T>().is_live(handle)) {
-            scene.edit(handle, [&](T &thing) { set_property(thing, animated.property, value); });
+            scene.edit(handle, [&](T &thing) {
+              if constexpr (std::is_same_v<T, Material>) {
+                for (const TextureInput &input : texture_inputs) {
+                  if (input.name == animated.slot) {
+                    set_property(thing.*input.slot, animated.property, value);
+                    return;
+                  }
+                }
+              }
+              set_property(thing, animated.property, value);
+            });
           }
         },
         animated.target);

@@ -72,14 +72,18 @@ struct AnimatedNode {
 /** Number of components of a property that can be animated: 4 for base_color, which has alpha as the last one. */
 [[nodiscard]] std::size_t width_of(std::string_view property);
 
-/** A property of a material, lamp or camera, and the track that animates it. */
+/** A property of a material, lamp, camera or node, and the track that animates it. */
 struct AnimatedValue {
-  std::variant<Handle<Material>, Handle<Lamp>, Handle<Camera>> target;
-  /** Name of a row of the target with Description::is_animated. */
+  std::variant<Handle<Material>, Handle<Lamp>, Handle<Camera>, Handle<Node>> target;
+  /** Name of a row of the target with Description::is_animated; "offset", "rotation" or "scale" of a slot. */
   std::string_view property;
+  /** TextureInput::name of the slot of a material whose transform is animated; empty: the target itself. */
+  std::string_view slot{};
   /** Factors of the first three numbers of the track, for the conversion of units. */
   glm::dvec3 factor{1.0};
   SharedTrack track;
+  /** Emission only: one number, by which the three of `track` are multiplied. nullptr: 1. */
+  SharedTrack strength_track{};
 };
 
 struct Animation {
@@ -137,12 +141,23 @@ struct DeformedMesh {
   std::vector<JointWeights> joint_weights;
   std::size_t joint_sets = 0;
   /**
+   * Triangles of the mesh whose second and third index the last deformation has swapped, because the joints mirror
+   * them: in the mesh, the front of each triangle agrees with its normals. Empty: none.
+   */
+  std::vector<bool> reversed_triangles;
+  /**
    * Joint matrices and weights of the last deformation; empty: the mesh has its rest shape. deform_meshes() skips the
    * mesh if they are unchanged.
    */
   std::vector<glm::dmat4> deformed_by_joints;
   std::vector<double> deformed_by_weights;
 };
+
+/** Adds \a value. A factor of emission and its strength become one value. */
+void add_value(Animation &animation, AnimatedValue value);
+
+/** Adds what \a other animates. \return false, without a change, if both animate the same thing */
+[[nodiscard]] bool join(Animation &animation, const Animation &other);
 
 class Scene;
 
@@ -155,6 +170,9 @@ void pose(Scene &scene, const Animation &animation, double seconds);
 
 /** Set the morph weights of all meshes of \a node. Missing weights are 0. Call deform_meshes() afterwards. */
 void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> weights);
+
+/** The indices of \a mesh in the order of the rest shape. \see DeformedMesh::reversed_triangles */
+[[nodiscard]] std::vector<std::uint32_t> rest_indices(const Mesh &mesh, const DeformedMesh &deformed);
 
 /**
  * Why \a deformed does not fit its mesh and its skin, so that deform_meshes() throws. Empty if it fits, and if it takes

@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace gnomon::scene {
 
@@ -30,6 +32,8 @@ struct Shape {
   std::vector<glm::dvec3> positions;
   std::vector<glm::dvec3> normals;
   std::vector<glm::dvec3> tangents;
+  /** Vertices that joints mirror. Empty: none. */
+  std::vector<bool> is_mirrored{};
 };
 
 /** Adds the differences of the morph targets at \a weights. */
@@ -142,11 +146,41 @@ void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &
     const glm::dmat4 matrix = vertex_matrix(deformed, joints, vertex, mesh);
     shape.positions[vertex] = glm::dvec3(matrix * glm::dvec4(shape.positions[vertex], 1.0));
     const glm::dmat3 linear(matrix);
+    const bool is_mirrored = glm::determinant(linear) < 0.0;
+    if (is_mirrored && shape.is_mirrored.empty()) {
+      shape.is_mirrored.resize(shape.positions.size(), false);
+    }
+    if (is_mirrored) {
+      shape.is_mirrored[vertex] = true;
+    }
     // The cofactors of a mirroring matrix reverse normals. Reverse them again.
-    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-    shape.normals[vertex] = side * (normal_matrix(linear) * shape.normals[vertex]);
+    shape.normals[vertex] = (is_mirrored ? -1.0 : 1.0) * (normal_matrix(linear) * shape.normals[vertex]);
     if (!shape.tangents.empty()) {
       shape.tangents[vertex] = linear * shape.tangents[vertex];
+    }
+  }
+}
+
+/** The triangles of which joints mirror at least two corners. Empty: none. */
+std::vector<bool> mirrored_triangles(const Shape &shape, const Mesh &mesh)
+{
+  std::vector<bool> result;
+  if (shape.is_mirrored.empty() || mesh.topology != Topology::Triangles) {
+    return result;
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto is_mirrored = [&](std::size_t corner) { return shape.is_mirrored[mesh.indices[i + corner]] ? 1 : 0; };
+    result.push_back(is_mirrored(0) + is_mirrored(1) + is_mirrored(2) >= 2);
+  }
+  return result;
+}
+
+/** Swaps two indices of each triangle of \a reversed, which may be shorter. */
+void reverse(const std::vector<bool> &reversed, std::vector<std::uint32_t> &indices)
+{
+  for (std::size_t i = 0; i < std::min(reversed.size(), indices.size() / 3); i++) {
+    if (reversed[i]) {
+      std::swap(indices[3 * i + 1], indices[3 * i + 2]);
     }
   }
 }
@@ -162,19 +196,33 @@ void make_flat_normals(Shape &shape, const std::vector<std::uint32_t> &indices)
   }
 }
 
-/** The mesh with its vertices deformed by \a joints; empty if it does not change. */
-std::optional<Mesh> deformed_mesh(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints,
-                                  const Mesh &current)
+/** The outcome of one deformation. */
+struct Deformed {
+  /** Empty: the mesh does not change. */
+  std::optional<Mesh> mesh;
+  /** \see DeformedMesh::reversed_triangles */
+  std::vector<bool> reversed_triangles;
+};
+
+/** \a current with its vertices deformed by \a joints. */
+Deformed deformed_mesh(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints, const Mesh &current)
 {
-  Shape shape{{deformed.positions.begin(), deformed.positions.end()},
-              {deformed.normals.begin(), deformed.normals.end()},
-              {deformed.tangents.begin(), deformed.tangents.end()}};
+  Shape shape{.positions = {deformed.positions.begin(), deformed.positions.end()},
+              .normals = {deformed.normals.begin(), deformed.normals.end()},
+              .tangents = {deformed.tangents.begin(), deformed.tangents.end()}};
   morph(deformed, deformed.weights, shape);
   if (deformed.skin >= 0) {
     skin_vertices(deformed, joints, current, shape);
   }
+  Deformed result{.mesh = {}, .reversed_triangles = mirrored_triangles(shape, current)};
+  const bool is_reordered = result.reversed_triangles != deformed.reversed_triangles;
+  std::vector<std::uint32_t> reordered;
+  if (is_reordered) {
+    reordered = rest_indices(current, deformed);
+    reverse(result.reversed_triangles, reordered);
+  }
   if (deformed.has_flat_normals) {
-    make_flat_normals(shape, current.indices);
+    make_flat_normals(shape, is_reordered ? reordered : current.indices);
   }
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
@@ -183,18 +231,23 @@ std::optional<Mesh> deformed_mesh(const DeformedMesh &deformed, const std::vecto
     positions.emplace_back(shape.positions[i]);
     normals.push_back(unit_or(shape.normals[i], deformed.normals[i]));
     if (!shape.tangents.empty()) {
-      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])), deformed.tangents[i].w);
+      const bool is_mirrored = !shape.is_mirrored.empty() && shape.is_mirrored[i];
+      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])),
+                            (is_mirrored ? -1.0F : 1.0F) * deformed.tangents[i].w);
     }
   }
   // Do not edit the mesh if it does not change, so that it is not uploaded and shadows are not drawn again.
-  if (positions == current.positions && normals == current.normals && tangents == current.tangents) {
-    return std::nullopt;
+  if (positions == current.positions && normals == current.normals && tangents == current.tangents && !is_reordered) {
+    return result;
   }
-  Mesh mesh = current;
-  mesh.positions = std::move(positions);
-  mesh.normals = std::move(normals);
-  mesh.tangents = std::move(tangents);
-  return mesh;
+  result.mesh = current;
+  result.mesh->positions = std::move(positions);
+  result.mesh->normals = std::move(normals);
+  result.mesh->tangents = std::move(tangents);
+  if (is_reordered) {
+    result.mesh->indices = std::move(reordered);
+  }
+  return result;
 }
 
 /** A vector whose sum with \a difference has the direction of \a sum; of length 1 if there is one. */
@@ -267,7 +320,8 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
     if (has_new_tangent) {
       const glm::vec3 direction(after.tangents[i]);
       const glm::vec3 tangent = unit_or(inverse * glm::dvec3(direction), direction);
-      rest.tangents[i] = {unit_or(without_difference(tangent, morphs.tangents[i]), tangent), after.tangents[i].w};
+      rest.tangents[i] = {unit_or(without_difference(tangent, morphs.tangents[i]), tangent),
+                          (glm::determinant(matrix) < 0.0 ? -1.0F : 1.0F) * after.tangents[i].w};
     }
   }
   return rest;
@@ -299,6 +353,13 @@ void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> 
   }
 }
 
+std::vector<std::uint32_t> rest_indices(const Mesh &mesh, const DeformedMesh &deformed)
+{
+  std::vector<std::uint32_t> indices = mesh.indices;
+  reverse(deformed.reversed_triangles, indices);
+  return indices;
+}
+
 void deform_meshes(Scene &scene)
 {
   check_deformed_meshes(scene);
@@ -314,9 +375,11 @@ void deform_meshes(Scene &scene)
     if (joints == deformed.deformed_by_joints && deformed.weights == deformed.deformed_by_weights) {
       continue;
     }
-    if (std::optional<Mesh> changed = deformed_mesh(deformed, joints, *mesh)) {
-      scene.replace_deformed(deformed.mesh, std::move(*changed));
+    Deformed changed = deformed_mesh(deformed, joints, *mesh);
+    if (changed.mesh) {
+      scene.replace_deformed(deformed.mesh, std::move(*changed.mesh));
     }
+    deformed.reversed_triangles = std::move(changed.reversed_triangles);
     deformed.deformed_by_joints = std::move(joints);
     deformed.deformed_by_weights = deformed.weights;
   }

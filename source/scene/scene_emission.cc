@@ -61,7 +61,7 @@ class ImageCache {
     }
     const auto [found, is_new] = reduced_.try_emplace(handle);
     if (is_new) {
-      found->second = reduced(image, image_size_max, true);
+      found->second = reduced(image, image_size_max, ImageUse::Color);
     }
     return found->second;
   }

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "scene_image.hh"
 
+#include "scene_parallel.hh"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace gnomon::scene {
+
+ImageUse use_of(const Material &material, const TextureInput &input)
+{
+  const bool covers = input.slot == &Material::base_color_texture && material.alpha_mode != AlphaMode::Opaque &&
+                      !material.surface_function;
+  return covers ? ImageUse::Coverage : input.is_color ? ImageUse::Color : ImageUse::Data;
+}
 
 float decoded_srgb(float value)
 {
@@ -43,46 +52,195 @@ std::vector<Span> spans_of(std::uint32_t size, std::uint32_t reduced_size)
   return spans;
 }
 
-}  // namespace
+/** The mean of an area: linear colours times alpha, and alpha. */
+struct Mean {
+  std::array<float, 3> weighted{};
+  float alpha = 0.0F;
+};
 
-Image reduced(Image image, std::uint32_t size_max, bool is_color)
+std::uint8_t rounded(float value)
 {
-  const std::uint32_t longer = std::max(image.width, image.height);
-  if (longer <= size_max) {
-    return image;
-  }
-  const auto reduced_size = [&](std::uint32_t size) {
-    return std::max(std::uint32_t(std::lround(double(size) * size_max / longer)), 1U);
-  };
+  return std::uint8_t(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+}
+
+/** The linear value of each byte. */
+std::array<float, 256> decoded_bytes(ImageUse use)
+{
   std::array<float, 256> decoded{};
   for (std::size_t i = 0; i < decoded.size(); i++) {
     const float value = float(i) / 255.0F;
-    decoded[i] = is_color ? decoded_srgb(value) : value;
+    decoded[i] = use == ImageUse::Data ? value : decoded_srgb(value);
   }
-  const std::vector<Span> columns = spans_of(image.width, reduced_size(image.width));
-  const std::vector<Span> rows = spans_of(image.height, reduced_size(image.height));
-  Image result{std::move(image.name), std::uint32_t(columns.size()), std::uint32_t(rows.size()), {}};
-  result.texels.reserve(4 * columns.size() * rows.size());
-  for (const Span &row : rows) {
-    for (const Span &column : columns) {
-      std::array<float, 4> sum{};
-      for (std::size_t b = 0; b < row.shares.size(); b++) {
-        for (std::size_t a = 0; a < column.shares.size(); a++) {
-          const float share = row.shares[b] * column.shares[a];
-          const std::size_t texel = 4 * ((row.first + b) * image.width + column.first + a);
-          for (std::size_t c = 0; c < 4; c++) {
-            const std::uint8_t value = image.texels[texel + c];
-            sum[c] += share * (c < 3 ? decoded[value] : float(value) / 255.0F);
+  return decoded;
+}
+
+/** Rounds encoded values without computing them. */
+class SrgbEncoder {
+ public:
+  SrgbEncoder()
+  {
+    for (std::size_t i = 0; i < limits_.size(); i++) {
+      limits_[i] = decoded_srgb((float(i) + 0.5F) / 255.0F);
+    }
+    for (std::size_t i = 0; i < starts_.size(); i++) {
+      const float low = float(i) / float(starts_.size());
+      starts_[i] = std::uint8_t(std::ranges::upper_bound(limits_, low) - limits_.begin());
+    }
+  }
+
+  [[nodiscard]] std::uint8_t operator()(float value) const
+  {
+    const auto last = float(starts_.size() - 1);
+    std::size_t byte = starts_[std::size_t(std::clamp(value * float(starts_.size()), 0.0F, last))];
+    while (byte < limits_.size() && value >= limits_[byte]) {
+      byte++;
+    }
+    return std::uint8_t(byte);
+  }
+
+ private:
+  /** The value from which on the next byte is nearer. */
+  std::array<float, 255> limits_{};
+  std::array<std::uint8_t, 4096> starts_{};
+};
+
+/** A mip level while it is made. */
+struct Level {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<Mean> means;
+};
+
+/** The next coarser level. \a mean_at(x, y): that of a texel of the finer level. */
+template <typename MeanAt>
+Level halved(std::uint32_t width, std::uint32_t height, const MeanAt &mean_at)
+{
+  Level level{std::max(width / 2, 1U), std::max(height / 2, 1U), {}};
+  const std::vector<Span> columns = spans_of(width, level.width);
+  const std::vector<Span> rows = spans_of(height, level.height);
+  level.means.resize(std::size_t(level.width) * level.height);
+  parallel_for(level.height, level.means.size() < 65536 ? 1 : 0, [&](std::size_t y) {
+    for (std::size_t x = 0; x < level.width; x++) {
+      Mean &sum = level.means[y * level.width + x];
+      for (std::size_t b = 0; b < rows[y].shares.size(); b++) {
+        for (std::size_t a = 0; a < columns[x].shares.size(); a++) {
+          const float share = rows[y].shares[b] * columns[x].shares[a];
+          const Mean &one = mean_at(columns[x].first + a, rows[y].first + b);
+          for (std::size_t c = 0; c < 3; c++) {
+            sum.weighted[c] += share * one.weighted[c];
           }
+          sum.alpha += share * one.alpha;
         }
       }
+    }
+  });
+  return level;
+}
+
+}  // namespace
+
+glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max)
+{
+  const std::uint32_t longer = std::max(size.x, size.y);
+  const auto edge = [&](std::uint32_t full) {
+    return std::max(std::uint32_t(std::lround(double(full) * size_max / longer)), 1U);
+  };
+  return longer <= size_max ? size : glm::uvec2(edge(size.x), edge(size.y));
+}
+
+Image reduced(Image image, std::uint32_t size_max, ImageUse use)
+{
+  const glm::uvec2 size = reduced_size({image.width, image.height}, size_max);
+  if (size == glm::uvec2(image.width, image.height)) {
+    return image;
+  }
+  const std::array<float, 256> decoded = decoded_bytes(use);
+  const std::vector<Span> columns = spans_of(image.width, size.x);
+  const std::vector<Span> rows = spans_of(image.height, size.y);
+  Image result{std::move(image.name), std::uint32_t(columns.size()), std::uint32_t(rows.size()), {}};
+  result.texels.reserve(4 * columns.size() * rows.size());
+  const auto sum_of = [&](const Span &row, const Span &column, bool is_weighted) {
+    std::array<float, 4> sum{};
+    for (std::size_t b = 0; b < row.shares.size(); b++) {
+      for (std::size_t a = 0; a < column.shares.size(); a++) {
+        const float share = row.shares[b] * column.shares[a];
+        const std::size_t texel = 4 * ((std::size_t(row.first) + b) * image.width + column.first + a);
+        const float alpha = float(image.texels[texel + 3]) / 255.0F;
+        const float weight = is_weighted ? share * alpha : share;
+        for (std::size_t c = 0; c < 3; c++) {
+          sum[c] += weight * decoded[image.texels[texel + c]];
+        }
+        sum[3] += share * alpha;
+      }
+    }
+    return sum;
+  };
+  for (const Span &row : rows) {
+    for (const Span &column : columns) {
+      std::array<float, 4> mean = sum_of(row, column, use == ImageUse::Coverage);
+      if (use == ImageUse::Coverage && mean[3] > 0.0F) {
+        std::for_each_n(mean.begin(), 3, [&](float &value) { value /= mean[3]; });
+      }
+      else if (use == ImageUse::Coverage) {
+        mean = sum_of(row, column, false);
+      }
       for (std::size_t c = 0; c < 4; c++) {
-        const float value = is_color && c < 3 ? encoded_srgb(sum[c]) : sum[c];
-        result.texels.push_back(std::uint8_t(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))));
+        result.texels.push_back(rounded(use != ImageUse::Data && c < 3 ? encoded_srgb(mean[c]) : mean[c]));
       }
     }
   }
   return result;
+}
+
+std::vector<std::uint8_t> coverage_levels(const Image &image)
+{
+  const std::array<float, 256> decoded = decoded_bytes(ImageUse::Coverage);
+  const SrgbEncoder encoded;
+  std::vector<Level> levels{{image.width, image.height, {}}};
+  const auto mean_of_image = [&](std::size_t x, std::size_t y) {
+    const std::uint8_t *texel = &image.texels[4 * (y * image.width + x)];
+    const float alpha = float(texel[3]) / 255.0F;
+    return Mean{{alpha * decoded[texel[0]], alpha * decoded[texel[1]], alpha * decoded[texel[2]]}, alpha};
+  };
+  while (levels.back().width > 1 || levels.back().height > 1) {
+    const Level &finer = levels.back();
+    const auto mean_of_level = [&](std::size_t x, std::size_t y) -> const Mean & {
+      return finer.means[y * finer.width + x];
+    };
+    levels.push_back(levels.size() == 1 ? halved(finer.width, finer.height, mean_of_image)
+                                        : halved(finer.width, finer.height, mean_of_level));
+  }
+  std::vector<std::size_t> starts;
+  std::size_t size = 0;
+  for (const Level &level : levels) {
+    starts.push_back(size);
+    size += std::size_t(4) * level.width * level.height;
+  }
+  std::vector<std::uint8_t> texels(size);
+  std::ranges::copy(image.texels, texels.begin());
+  for (std::size_t i = levels.size(); i-- > 0;) {
+    const Level &level = levels[i];
+    const Level *coarser = i + 1 < levels.size() ? &levels[i + 1] : nullptr;
+    const bool is_large = std::size_t(level.width) * level.height >= 65536;
+    parallel_for(level.height, is_large ? 0 : 1, [&](std::size_t y) {
+      std::uint8_t *texel = &texels[starts[i] + 4 * y * level.width];
+      for (std::size_t x = 0; x < level.width; x++, texel += 4) {
+        const Mean *mean = i > 0 ? &level.means[y * level.width + x] : nullptr;
+        if (mean && mean->alpha > 0.0F) {
+          for (std::size_t c = 0; c < 3; c++) {
+            texel[c] = encoded(mean->weighted[c] / mean->alpha);
+          }
+          texel[3] = rounded(mean->alpha);
+        }
+        else if (coarser && (mean || texel[3] == 0)) {
+          const std::size_t column = std::min<std::size_t>(x / 2, coarser->width - 1);
+          const std::size_t row = std::min<std::size_t>(y / 2, coarser->height - 1);
+          std::copy_n(&texels[starts[i + 1] + 4 * (row * coarser->width + column)], 3, texel);
+        }
+      }
+    });
+  }
+  return texels;
 }
 
 }  // namespace gnomon::scene

@@ -3,16 +3,48 @@
 
 #include "scene_types.hh"
 
+#include <glm/ext/vector_uint2.hpp>
+
+#include <cstdint>
+#include <vector>
+
 namespace gnomon::scene {
+
+/** How materials use the texels of an image. */
+enum class ImageUse {
+  /** Four linear values. */
+  Data,
+  /** Colours that are encoded as sRGB; alpha has no effect. */
+  Color,
+  /** The same of masked and blended surfaces: a texel covers the part alpha, and counts by it in a mean. */
+  Coverage,
+};
+
+/**
+ * The use of the image of one of the material's slots. Coverage: the base colour of a masked or blended surface without
+ * a surface function, which may show what alpha hides.
+ */
+[[nodiscard]] ImageUse use_of(const Material &material, const TextureInput &input);
 
 /** The linear value of a channel that is encoded as sRGB (IEC 61966-2-1). \a value in [0, 1]. */
 [[nodiscard]] float decoded_srgb(float value);
 
+/** The size, in texels, of an image of \a size after reduced(). */
+[[nodiscard]] glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max);
+
 /**
  * \a image with at most \a size_max texels along both edges, and about the same ratio of its edges. Each texel is the
- * mean of the area that it covers: of decoded colours if \a is_color is true (\see TextureInput), and of the values
- * otherwise. An image that is small enough is returned as it is. \pre \a size_max > 0
+ * mean of the area that it covers, of values or of decoded colours as \a use says. An image that is small enough is
+ * returned as it is. \pre \a size_max > 0
  */
-[[nodiscard]] Image reduced(Image image, std::uint32_t size_max, bool is_color);
+[[nodiscard]] Image reduced(Image image, std::uint32_t size_max, ImageUse use);
+
+/**
+ * The texels of all mip levels, the finest first, for ImageUse::Coverage. A texel of a level has the mean of the
+ * colours that it covers, weighted by alpha, and the mean of alpha. Texels without alpha, also those of the image, have
+ * the colour of the next coarser level that has one, so that filters between texels mix in no colour that is not seen.
+ * Edges are halved and rounded down. \pre a texel of the image has alpha
+ */
+[[nodiscard]] std::vector<std::uint8_t> coverage_levels(const Image &image);
 
 }  // namespace gnomon::scene

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 namespace gnomon::scene {
 
@@ -26,6 +29,51 @@ static std::string fault_of(const WorldPicture &picture)
   const float value = !is_radiance(found->r) ? found->r : !is_radiance(found->g) ? found->g : found->b;
   return fmt::format("texel {}, {} from the top left is {}; texels must be finite and at least 0", index % width,
                      index / width, value);
+}
+
+std::string clamp_radiances(WorldPicture &picture)
+{
+  struct Kind {
+    std::string_view name;
+    std::size_t count = 0;
+    std::size_t first = 0;
+  };
+  std::array<Kind, 3> kinds{{{"negative"}, {"not a number"}, {"infinite"}}};
+  glm::vec3 largest(0.0F);
+  for (std::size_t i = 0; i < picture.texels.size(); i++) {
+    std::array<bool, 3> is_kind{};
+    for (int c = 0; c < 3; c++) {
+      const float value = picture.texels[i][c];
+      is_kind[0] = is_kind[0] || value < 0.0F;
+      is_kind[1] = is_kind[1] || std::isnan(value);
+      is_kind[2] = is_kind[2] || value == std::numeric_limits<float>::infinity();
+      largest[c] = std::isfinite(value) ? std::max(largest[c], value) : largest[c];
+    }
+    for (std::size_t k = 0; k < kinds.size(); k++) {
+      if (is_kind[k]) {
+        kinds[k].first = kinds[k].count == 0 ? i : kinds[k].first;
+        kinds[k].count++;
+      }
+    }
+  }
+  std::string text;
+  for (const Kind &kind : kinds) {
+    if (kind.count > 0) {
+      const auto width = std::size_t(std::max(picture.width, 1));
+      text += fmt::format("{}{} of {} texels {} (the first at {}, {} from the top left)", text.empty() ? "" : ", ",
+                          kind.count, picture.texels.size(), kind.name, kind.first % width, kind.first / width);
+    }
+  }
+  if (text.empty()) {
+    return text;
+  }
+  for (glm::vec3 &texel : picture.texels) {
+    for (int c = 0; c < 3; c++) {
+      // False for what is not a number, too.
+      texel[c] = texel[c] > 0.0F ? std::min(texel[c], largest[c]) : 0.0F;
+    }
+  }
+  return text + ": clamped to 0 and the largest finite value";
 }
 
 std::string fault_of(const World &world)

@@ -67,6 +67,12 @@ constexpr void World::for_each_property(Visit &&visit)
                   .sentence = "Of the picture around the y axis. By π/2, the texel at +x moves to -z."}));
 }
 
+/**
+ * Makes all texels radiances: negative and undefined values become 0, infinite ones the largest finite value of their
+ * channel. \return what was changed, with the number and the first place of each kind, for a warning; empty: nothing.
+ */
+[[nodiscard]] std::string clamp_radiances(WorldPicture &picture);
+
 /** Why Scene::set_world refuses \a world; empty: it does not. */
 [[nodiscard]] std::string fault_of(const World &world);
 

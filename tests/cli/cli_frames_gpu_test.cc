@@ -57,6 +57,16 @@ TEST_F(FramesTest, EachFrameIsAFileOfItsTime)
   EXPECT_EQ(last->spec().get_string_attribute("gnomon:seconds"), "1");
 }
 
+TEST_F(FramesTest, APlaceForANumberNeedsFrames)
+{
+  for (const char *name : {"f_####.png", "f#.exr"}) {
+    const Finished finished = render(std::string("-o ") + name);
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_NE(finished.err.find("needs --frames"), std::string::npos) << finished.err;
+  }
+  EXPECT_EQ(file_count(), 1U) << "the scene";
+}
+
 TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
 {
   const std::string frames = "-o f#.exr --frames 1-3 --fps 10 --json run.json";

@@ -45,9 +45,88 @@ TEST_F(RadiancePictureTest, AreReadAsAnotherLibraryReadsThem)
   write("pixels.hdr", pixels);
   write("runs.hdr",
         header + std::string("\x02\x02\x00\x08", 4) + "\x88\x80\x84\x40\x84\x40\x88\x20\x02\x81\x81\x86\x81");
-  const std::vector<glm::vec4> expected(8, glm::vec4(1.0F, 0.5F, 0.25F, 1.0F));
+  // Divided by the exposure.
+  const std::vector<glm::vec4> expected(8, glm::vec4(0.5F, 0.25F, 0.125F, 1.0F));
   EXPECT_EQ(cli::read_picture(folder / "pixels.hdr").pixels, expected);
   EXPECT_EQ(cli::read_picture(folder / "runs.hdr").pixels, expected);
+}
+
+/** Bytes of a pixel with the values m 2^-8. */
+std::string pixel_of(int red, int green, int blue)
+{
+  return {char(red), char(green), char(blue), char(0x80)};
+}
+
+TEST_F(RadiancePictureTest, OlderRunsRepeatThePixelBefore)
+{
+  const std::string first = pixel_of(128, 64, 32);
+  const std::string second = pixel_of(32, 64, 128);
+  const auto repeat = [](int count) { return std::string("\x01\x01\x01") + char(count); };
+  // A run after a run counts 256 times as much: 2 + 256.
+  for (const auto &[row, width] :
+       std::vector<std::pair<std::string, int>>{{first + second, 2},
+                                                {first + repeat(3) + second, 5},
+                                                {first + repeat(2) + repeat(1) + second, 260},
+                                                {first + repeat(9) + second + repeat(4), 15}}) {
+    write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X " + std::to_string(width) + '\n' + row + row);
+    const cli::Picture picture = cli::read_picture(folder / "a.hdr");
+    ASSERT_EQ(picture.size_px, glm::ivec2(width, 2));
+    const std::size_t first_count = row == first + repeat(9) + second + repeat(4) ? 10 : std::size_t(width) - 1;
+    for (std::size_t i = 0; i < picture.pixels.size(); i++) {
+      const bool is_first = i % std::size_t(width) < first_count;
+      const glm::vec4 expected = is_first ? glm::vec4(0.5F, 0.25F, 0.125F, 1.0F) : glm::vec4(0.125F, 0.25F, 0.5F, 1.0F);
+      ASSERT_EQ(picture.pixels[i], expected) << width << ' ' << i;
+    }
+  }
+}
+
+TEST_F(RadiancePictureTest, RowsAndColumnsAreReadFromEachSide)
+{
+  // Pixel (x, y), y from the top, has the red value 64 x and the green value 64 y.
+  for (const char *order :
+       {"-Y 2 +X 3", "-Y 2 -X 3", "+Y 2 +X 3", "+Y 2 -X 3", "+X 3 -Y 2", "-X 3 -Y 2", "+X 3 +Y 2", "-X 3 +Y 2"}) {
+    const std::string text(order);
+    const bool has_columns = text[1] == 'X';
+    const auto sign_of = [&](char axis) { return text[text.find(axis) - 1]; };
+    std::string content = "#?RADIANCE\n\n" + text + '\n';
+    for (int i = 0; i < (has_columns ? 3 : 2); i++) {
+      for (int k = 0; k < (has_columns ? 2 : 3); k++) {
+        const int along_x = has_columns ? i : k;
+        const int along_y = has_columns ? k : i;
+        const int x = sign_of('X') == '+' ? along_x : 2 - along_x;
+        const int y = sign_of('Y') == '-' ? along_y : 1 - along_y;
+        content += pixel_of(64 * x, 64 * y, 255);
+      }
+    }
+    write("a.hdr", content);
+    const cli::Picture picture = cli::read_picture(folder / "a.hdr");
+    ASSERT_EQ(picture.size_px, glm::ivec2(3, 2)) << order;
+    for (int y = 0; y < 2; y++) {
+      for (int x = 0; x < 3; x++) {
+        const glm::vec4 &pixel = picture.pixels[std::size_t((1 - y) * 3 + x)];
+        EXPECT_EQ(glm::vec2(pixel), glm::vec2(0.25F * float(x), 0.25F * float(y))) << order;
+      }
+    }
+  }
+}
+
+TEST_F(RadiancePictureTest, AreRadiancesOfTheProgramsPrimaries)
+{
+  const auto read = [&](const std::string &header, const std::string &pixel) {
+    write("a.hdr", "#?RADIANCE\n" + header + "\n-Y 1 +X 1\n" + pixel);
+    return glm::vec3(cli::read_picture(folder / "a.hdr").pixels.front());
+  };
+  const std::string grey = pixel_of(128, 128, 128);
+  EXPECT_EQ(read("", grey), glm::vec3(0.5F));
+  EXPECT_EQ(read("EXPOSURE=2\nEXPOSURE= 0.5\nEXPOSURE=4\n", grey), glm::vec3(0.125F));
+  EXPECT_EQ(read("COLORCORR= 1 2 4\nEXPOSURE=0.5\n", grey), glm::vec3(1.0F, 0.5F, 0.25F));
+  // White of Rec. 709 is (0.9505, 1, 1.089) in CIE XYZ, here within 0.1 of whole bytes, which red counts 4 times.
+  const glm::vec3 white = read("FORMAT=32-bit_rle_xyze\n", pixel_of(192, 202, 220));
+  for (int c = 0; c < 3; c++) {
+    EXPECT_NEAR(white[c], 202.0F / 256.0F, 0.4F / 256.0F);
+  }
+  // Outside of the primaries: no value is negative.
+  EXPECT_EQ(read("FORMAT=32-bit_rle_xyze\n", pixel_of(0, 128, 0)).r, 0.0F);
 }
 
 TEST_F(RadiancePictureTest, ThatCannotBeReadHaveAReason)
@@ -60,17 +139,20 @@ TEST_F(RadiancePictureTest, ThatCannotBeReadHaveAReason)
            {size + whole.substr(0, 11), "is cut off"},
            {"\n-Y 2 +X 8\n" + whole + row + "\x08" + channel + channel + channel + channel, "is cut off"},
            {"\n-Y 32768 +X 32767\n" + whole, "is cut off"},
+           {"EXPOSURE=0\n" + size + whole, "has an EXPOSURE or a COLORCORR that is no number above 0"},
+           {"COLORCORR=1 2\n" + size + whole, "has an EXPOSURE or a COLORCORR that is no number above 0"},
+           {"\n-Y 1 +X 3\n\x80\x40\x20\x81\x01\x01\x01\x03", "a run does not end with its row"},
+           {"\n-Y 1 -Y 8\n" + whole, "does not state its size"},
            {"\n-Y 1000000000 +X 1\n" + whole, "is cut off"},
            {"EXPOSURE=1", "is cut off"},
            {"\n-Y 100000 +X 1\n" + std::string(400000, 'a'), "has 1x100000 pixels: an edge may have 1 to 32768"},
            {size + row + "\x89\x01" + channel + channel + channel, "a run does not end with its row"},
            {size + row + std::string(8, '\0'), "a run does not end with its row"},
            {size + std::string("\x02\x02\x00\x09", 4) + std::string(8, '\1'), "a row has another width"},
-           {"\n+Y 1 +X 8\n" + whole, "does not state its size"},
            {"\n-Y 1 +X 8a\n" + whole, "does not state its size"},
            {"\n-Y 1 +X 0\n" + whole, "does not state its size"},
            {"\n-Y 1 +X 99999999999\n" + whole, "does not state its size"},
-           {"FORMAT=32-bit_rle_xyze\n" + size + whole, "has another format"}}) {
+           {"FORMAT=32-bit_rle_cmyk\n" + size + whole, "has another format"}}) {
     write("a.hdr", "#?RADIANCE\n" + content);
     try {
       (void)cli::read_picture(folder / "a.hdr");

@@ -188,6 +188,9 @@ TEST_F(GltfExportAnimation, ACopyOfANodeWithoutVolumeIsWrittenAsItStands)
 {
   GltfBuilder builder = skinned_triangle();
   builder.document["nodes"][0]["scale"] = {1, 0, 1};
+  // Without a child, the transform would be left out.
+  builder.document["nodes"][0]["children"] = {builder.document["nodes"].size()};
+  builder.append("nodes", {{"name", "child"}});
   Scene scene = import(builder);
   scene::Node copy = scene.nodes()[scene.deformed_meshes.at(0).node];
   copy.parent_from_node = glm::translate(glm::dmat4(1.0), {5, 0, 0});

@@ -134,6 +134,41 @@ TEST(GltfImage, LargerOnesThanTheLimitAreReduced)
   EXPECT_EQ(image.texels[3], 112);
 }
 
+TEST(GltfImage, LimitsCountAfterTheReduction)
+{
+  // Wider than any texture.
+  const Bytes wide = image_file("png", 16400, 1, 3, Bytes(std::size_t(3) * 16400, 100));
+  EXPECT_HAS(reason({{"uri", data_uri(wide)}}), "is too large, 16400x1 texels: an edge may have 16384 unless");
+  const Scene scene =
+      import_text(textured_triangle({{"uri", data_uri(wide)}}).gltf(), "scene.gltf", {.texture_size_max = 1024});
+  EXPECT_EQ(nth(scene.images(), 0).width, 1024U);
+  EXPECT_EQ(nth(scene.images(), 0).texels[0], 100);
+}
+
+TEST(SlowGltfImage, SeventeenOf4096FitWithAndWithoutReduction)
+{
+  GltfBuilder builder = textured_triangle();
+  json primitive = builder.document["meshes"][0]["primitives"][0];
+  for (int i = 0; i < 17; i++) {
+    // White but for the first texel, so that no two are the same bytes.
+    const Bytes png = image_file("png", 4096, 4096, 1, [&] {
+      Bytes texels(std::size_t(4096) * 4096, 255);
+      texels[0] = std::uint8_t(i);
+      return texels;
+    }());
+    builder.append("images", {{"uri", data_uri(png)}});
+    builder.append("textures", {{"source", i + 1}});
+    primitive["material"] =
+        builder.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i + 1}}}}}});
+    builder.document["meshes"][0]["primitives"].push_back(primitive);
+  }
+  const auto warnings = [&](std::uint32_t size_max) {
+    return all_warnings(import_text(builder.gltf(), "scene.gltf", {.texture_size_max = size_max}));
+  };
+  EXPECT_EQ(warnings(0).find("too large"), std::string::npos);
+  EXPECT_EQ(warnings(1024).find("too large"), std::string::npos);
+}
+
 TEST(GltfImage, MayBeInABufferView)
 {
   GltfBuilder builder = textured_triangle(json::object());
@@ -280,7 +315,7 @@ Bytes claimed_png(std::uint32_t edge)
 TEST(GltfImage, InvalidSizesAreRefusedBeforeAllocation)
 {
   EXPECT_HAS(reason({{"uri", data_uri(claimed_png(8000))}}), "is cut off: 8000x8000 texels cannot be in ");
-  EXPECT_HAS(reason({{"uri", data_uri(claimed_png(16000))}}), "is too large, 16000x16000 texels");
+  EXPECT_HAS(reason({{"uri", data_uri(claimed_png(16000))}}), "is cut off: 16000x16000 texels cannot be in ");
   EXPECT_HAS(reason({{"uri", data_uri(claimed_png(40000))}}),
              "is too large, 40000x40000 texels: an edge may have 16384");
 }
@@ -381,7 +416,17 @@ Bytes claimed_webp(std::uint32_t edge)
 
 TEST(GltfWebp, SizesAreLimitedBeforeAllocation)
 {
-  EXPECT_HAS(reason({{"uri", data_uri(claimed_webp(16000))}}), "is too large, 16000x16000 texels");
+  // The headers of three images state more than all may have, and the texels of the first two are damaged.
+  GltfBuilder builder = textured_triangle({{"uri", data_uri(claimed_webp(16000))}});
+  for (int i = 1; i < 3; i++) {
+    builder.append("images", {{"uri", data_uri(claimed_webp(std::uint32_t(16000 + i)))}});
+    builder.append("textures", {{"source", i}});
+  }
+  json &material = builder.document["materials"][0];
+  material["emissiveTexture"] = {{"index", 1}};
+  material["occlusionTexture"] = {{"index", 2}};
+  EXPECT_WARNING(import(builder),
+                 "is too large, 16001x16001 texels: 24806908 are left of those that all images may have");
 }
 
 }  // namespace

@@ -320,5 +320,25 @@ TEST(GltfSpelling, ExtensionsThatAreNotReadAreNamedWhereverTheyStand)
   EXPECT_WARNING(import(builder), "node 2 and 1 other: EXT_a is not read (2 times)");
 }
 
+TEST(GltfVisibility, NodesAndTheirDescendantsAreHidden)
+{
+  GltfBuilder builder = triangle_scene();
+  builder.document["nodes"][0]["extensions"]["KHR_node_visibility"] = {{"visible", false}};
+  builder.document["extensionsRequired"] = {"KHR_node_visibility"};
+  const Scene hidden = import(builder);
+  EXPECT_TRUE(hidden.objects().empty());
+  EXPECT_NO_WARNING(hidden, "KHR_node_visibility");
+  builder.document["nodes"][0]["extensions"]["KHR_node_visibility"] = {{"visible", true}};
+  EXPECT_EQ(import(builder).objects().size(), 1U);
+  builder.document["nodes"][0]["extensions"]["KHR_node_visibility"] = json::object();
+  EXPECT_EQ(import(builder).objects().size(), 1U) << "visible by default";
+  // An ancestor hides it, whatever it says itself.
+  builder.node({{"children", {0}}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}});
+  builder.document["scenes"][0]["nodes"] = {1};
+  EXPECT_TRUE(import(builder).objects().empty());
+  builder.document["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"] = "no";
+  EXPECT_HAS(import_error(builder), "KHR_node_visibility.visible: is \"no\", and must be true or false");
+}
+
 }  // namespace
 }  // namespace gnomon::test

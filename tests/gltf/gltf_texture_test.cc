@@ -101,6 +101,7 @@ TEST(GltfUv, TwoSetsAreKeptAndAThirdIsNamed)
   attributes["TEXCOORD_3"] = builder.accessor(std::vector<float>{5, 5, 6, 6, 7, 7}, Float32, "VEC2");
   json &material = builder.document["materials"][0];
   material["emissiveTexture"] = {{"index", 0}, {"texCoord", 3}};
+  material["emissiveFactor"] = {1, 1, 1};
   const Scene two = import(builder);
   EXPECT_EQ(nth(two.meshes(), 0).uvs.at(2), glm::vec2(0.25F, 0.75F));
   EXPECT_EQ(nth(two.meshes(), 0).second_uvs.at(2), glm::vec2(7));
@@ -108,6 +109,29 @@ TEST(GltfUv, TwoSetsAreKeptAndAThirdIsNamed)
   EXPECT_EQ(two.images().size(), 1U) << "shared";
   material["occlusionTexture"] = {{"index", 0}, {"texCoord", 5}};
   EXPECT_WARNING(import(builder), "its occlusionTexture is drawn as no occlusion: texCoord: 5 is a third set");
+}
+
+TEST(GltfUv, SetsAreKeptByImportanceAndNotByNumber)
+{
+  GltfBuilder builder = textured_triangle();
+  json &attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  for (const char *name : {"TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_7"}) {
+    attributes[name] = builder.accessor(std::vector<float>{5, 5, 6, 6, 7, 7}, Float32, "VEC2");
+  }
+  json &material = builder.document["materials"][0];
+  slot(builder)["texCoord"] = 7;
+  material["normalTexture"] = {{"index", 0}, {"texCoord", 0}};
+  material["occlusionTexture"] = {{"index", 0}, {"texCoord", 1}};
+  const Scene lit = import(builder);
+  EXPECT_NO_WARNING(lit, "baseColorTexture");
+  EXPECT_NO_WARNING(lit, "normalTexture");
+  EXPECT_WARNING(lit, "its occlusionTexture is drawn as no occlusion: texCoord: 1 is a third set");
+  // A texture without an effect gives way.
+  material["extensions"]["KHR_materials_unlit"] = json::object();
+  EXPECT_NO_WARNING(import(builder), "baseColorTexture");
+  material["extensions"].erase("KHR_materials_unlit");
+  material["normalTexture"]["scale"] = 0;
+  EXPECT_WARNING(import(builder), "its normalTexture is drawn as a flat surface: texCoord: 0 is a third set");
 }
 
 TEST(GltfTangent, AreReadOrComputed)

@@ -517,8 +517,8 @@ class Pictures(unittest.TestCase):
     def test_settings_are_those_of_the_program(self):
         """Each setting on which pictures depend, by its name, with the value that the program reports."""
         # Not of a renderer: display, import, and what changes no picture.
-        others = {"view_transform", "exposure", "variant", "texture_size_max", "is_timed", "layer_pass",
-                  "clustered_lamps_min"}
+        others = {"view_transform", "exposure", "variant", "texture_size_max", "lamp_units", "is_timed",
+                  "layer_pass", "clustered_lamps_min"}
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "report.json")
             for sample_count in (1, 2, 16):
@@ -544,7 +544,9 @@ class Pictures(unittest.TestCase):
                 gnomon.Renderer(self.device, square_scene(), (16, 8), **{name: wrong})
         scene = gnomon.load(PLAZA, texture_size_max=1)
         self.assertTrue(all(max(texture.texels.shape[:2]) == 1 for texture in scene.textures))
-        for wrong in ({"texture_size_max": -1}, {"texture_size_max": 2 ** 21}, {"texture_size": 4}):
+        power = {units: sum(lamp.intensity for lamp in gnomon.load(PLAZA, lamp_units=units).lamps) for units in ("lumen", "raw")}
+        self.assertAlmostEqual(power["raw"] / power["lumen"], 683, delta=1e-3)
+        for wrong in ({"texture_size_max": -1}, {"texture_size_max": 2 ** 21}, {"texture_size": 4}, {"lamp_units": "W"}):
             with self.assertRaises((gnomon.InvalidEdit, TypeError)):
                 gnomon.load(PLAZA, **wrong)
 

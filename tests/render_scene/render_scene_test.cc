@@ -154,7 +154,7 @@ TEST_F(RenderSceneTest, RemovedMeshesAndImagesAreFreed)
   const auto texture = add_texture(scene, 1, {1, 2, 3, 255});
   const auto image = scene.textures()[texture].image;
   static_cast<void>(render_scene.batch(mesh, MeshStreams::Shape));
-  static_cast<void>(render_scene.texture(texture, true));
+  static_cast<void>(render_scene.texture(texture, scene::ImageUse::Color));
   ASSERT_TRUE(render_scene.meshes().find(mesh));
   ASSERT_TRUE(render_scene.images().find(image));
   EXPECT_EQ(render_scene.images().count(), 1U);
@@ -189,7 +189,7 @@ TEST_F(RenderSceneTest, AnImageIsUploadedOnceAndAgainWhereItsContentChanged)
   const auto second = scene.add(repeated);
   const auto uploaded = [&](scene::Handle<scene::Texture> texture) {
     const std::uint64_t before = device->counters().upload_bytes;
-    static_cast<void>(render_scene.texture(texture, true));
+    static_cast<void>(render_scene.texture(texture, scene::ImageUse::Color));
     return device->counters().upload_bytes - before;
   };
   EXPECT_EQ(uploaded(first), 8U);
@@ -214,7 +214,7 @@ TEST_F(RenderSceneTest, LinearTexturesAreAnisotropicWhereTheDeviceFiltersThemIts
   const auto anisotropy = [&](const gpu::Limits &limits) {
     const auto on_device = gpu::create_null_device(limits);
     RenderScene on_limits(*on_device, scene);
-    const gpu::ResourceId sampler = on_limits.texture(texture, true).sampler.id();
+    const gpu::ResourceId sampler = on_limits.texture(texture, scene::ImageUse::Color).sampler.id();
     return std::get<gpu::SamplerDesc>(on_device->find(gpu::ResourceKind::Sampler, sampler)->desc).anisotropy;
   };
   EXPECT_EQ(anisotropy({}), 1) << "nearest";
@@ -236,17 +236,19 @@ TEST_F(RenderSceneTest, AFailedUploadLeavesWhatWasThere)
   RenderScene on_small(*small, scene);
   const auto texture = add_texture(scene, 2, std::vector<std::uint8_t>(8, 255));
   const auto image = scene.textures()[texture].image;
-  static_cast<void>(on_small.texture(texture, true));
+  static_cast<void>(on_small.texture(texture, scene::ImageUse::Color));
   const gpu::ResourceId before = on_small.images().find(image)->id();
   const scene::Image large{"large", 5, 1, std::vector<std::uint8_t>(20, 255)};
   scene.replace(image, large);
   on_small.update();
-  test::expect_contains(test::error_of([&] { static_cast<void>(on_small.texture(texture, true)); }), "large");
+  test::expect_contains(test::error_of([&] { static_cast<void>(on_small.texture(texture, scene::ImageUse::Color)); }),
+                        "large");
   ASSERT_TRUE(on_small.images().find(image));
   EXPECT_EQ(on_small.images().find(image)->id(), before);
-  EXPECT_NE(test::error_of([&] { static_cast<void>(on_small.texture(texture, true)); }), "") << "it is tried again";
+  EXPECT_NE(test::error_of([&] { static_cast<void>(on_small.texture(texture, scene::ImageUse::Color)); }), "")
+      << "it is tried again";
   scene.replace(image, scene::Image{"small", 1, 1, std::vector<std::uint8_t>(4, 255)});
-  EXPECT_EQ(on_small.texture(texture, true).image.desc().width, 1);
+  EXPECT_EQ(on_small.texture(texture, scene::ImageUse::Color).image.desc().width, 1);
 }
 
 /** A mesh in buffers of the host, of the size of a square. */
@@ -381,7 +383,7 @@ TEST_F(RenderSceneTest, AHostsTextureIsLookedUpWithoutAnUploadUntilItIsTakenBack
   render_scene.set_host_texture(image, gpu::HostTexture{7, {64, 32}});
   render_scene.update();
   EXPECT_GT(render_scene.passes_revision(), passes);
-  const Images::Lookup of_host = render_scene.texture(texture, true);
+  const Images::Lookup of_host = render_scene.texture(texture, scene::ImageUse::Color);
   EXPECT_EQ(of_host.image.desc().host_name, 7U);
   EXPECT_EQ(of_host.image.desc().width, 64);
   const auto mip_of = [&](const gpu::Sampler &sampler) {
@@ -390,19 +392,20 @@ TEST_F(RenderSceneTest, AHostsTextureIsLookedUpWithoutAnUploadUntilItIsTakenBack
   EXPECT_EQ(mip_of(of_host.sampler), gpu::MipFilter::None) << "it has one level";
   render_scene.set_host_texture(image, gpu::HostTexture{7, {64, 32}, true});
   render_scene.update();
-  EXPECT_EQ(mip_of(render_scene.texture(texture, true).sampler), gpu::MipFilter::Linear);
+  EXPECT_EQ(mip_of(render_scene.texture(texture, scene::ImageUse::Color).sampler), gpu::MipFilter::Linear);
   EXPECT_EQ(device->counters().upload_bytes, uploads);
   EXPECT_EQ(device->counters().textures_made, made);
   EXPECT_EQ(device->memory_bytes(), 0U);
   render_scene.set_host_texture(image, std::nullopt);
   render_scene.update();
   EXPECT_EQ(render_scene.images().find(image), nullptr);
-  EXPECT_EQ(render_scene.texture(texture, true).image.desc().width, 1);
+  EXPECT_EQ(render_scene.texture(texture, scene::ImageUse::Color).image.desc().width, 1);
   EXPECT_GT(device->counters().upload_bytes, uploads);
   render_scene.set_host_texture(image, gpu::HostTexture{0, {64, 32}});
   render_scene.update();
-  test::expect_contains(test::error_of([&] { static_cast<void>(render_scene.texture(texture, true)); }),
-                        "the name of the host's texture is 0");
+  test::expect_contains(
+      test::error_of([&] { static_cast<void>(render_scene.texture(texture, scene::ImageUse::Color)); }),
+      "the name of the host's texture is 0");
 }
 
 TEST_F(RenderSceneTest, HiddenNodesHaveNoObjectAndNoLamp)

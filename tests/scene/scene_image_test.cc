@@ -19,31 +19,31 @@ Image grey_image(std::uint32_t width, const std::vector<std::uint8_t> &values)
 TEST(ReducedImage, HasTheMeanOfTheAreaOfEachTexel)
 {
   const Image image = grey_image(4, {0, 100, 50, 50, 200, 100, 50, 250, 0, 0, 8, 8, 0, 0, 8, 8});
-  const Image half = reduced(image, 2, false);
+  const Image half = reduced(image, 2, ImageUse::Data);
   EXPECT_EQ(half.name, "grey");
   ASSERT_EQ(half.width, 2U);
   ASSERT_EQ(half.height, 2U);
   EXPECT_EQ(half.texels, grey_image(2, {100, 100, 0, 8}).texels);
   // 3 texels to 2: the middle one counts for a third of both.
-  EXPECT_EQ(reduced(grey_image(3, {30, 90, 150}), 2, false).texels, grey_image(2, {50, 130}).texels);
+  EXPECT_EQ(reduced(grey_image(3, {30, 90, 150}), 2, ImageUse::Data).texels, grey_image(2, {50, 130}).texels);
 }
 
 TEST(ReducedImage, IsTheMeanOfLightForColours)
 {
   // Half the light is encoded as 188 by sRGB. Alpha is linear.
-  const Image half = reduced(grey_image(2, {0, 255}), 1, true);
+  const Image half = reduced(grey_image(2, {0, 255}), 1, ImageUse::Color);
   EXPECT_EQ(half.texels, (std::vector<std::uint8_t>{188, 188, 188, 128}));
   for (int value = 0; value < 256; value++) {
     const Image image = grey_image(2, {std::uint8_t(value), std::uint8_t(value)});
-    EXPECT_EQ(reduced(image, 1, true).texels, grey_image(1, {std::uint8_t(value)}).texels) << value;
+    EXPECT_EQ(reduced(image, 1, ImageUse::Color).texels, grey_image(1, {std::uint8_t(value)}).texels) << value;
   }
 }
 
 TEST(ReducedImage, KeepsTheRatioOfItsEdgesAndIsNeverEmpty)
 {
   const auto size_of = [](std::uint32_t width, std::uint32_t height, std::uint32_t size_max) {
-    const Image image =
-        reduced(grey_image(width, std::vector<std::uint8_t>(std::size_t(width) * height, 7)), size_max, true);
+    const Image image = reduced(grey_image(width, std::vector<std::uint8_t>(std::size_t(width) * height, 7)), size_max,
+                                ImageUse::Color);
     EXPECT_EQ(image.texels,
               grey_image(image.width, std::vector<std::uint8_t>(std::size_t(image.width) * image.height, 7)).texels);
     return std::pair(image.width, image.height);
@@ -53,6 +53,46 @@ TEST(ReducedImage, KeepsTheRatioOfItsEdgesAndIsNeverEmpty)
   EXPECT_EQ(size_of(4096, 1, 16), std::pair(16U, 1U));
   EXPECT_EQ(size_of(3, 2, 3), std::pair(3U, 2U));
   EXPECT_EQ(size_of(7, 5, 1), std::pair(1U, 1U));
+}
+
+TEST(CoverageLevels, WeighColoursByAlphaAndKeepTheMeanOfAlpha)
+{
+  // One transparent, black texel in four.
+  const std::vector<std::uint8_t> leaf{40, 160, 30, 255};
+  Image image{"leaf", 4, 2, {}};
+  for (int i = 0; i < 8; i++) {
+    const std::vector<std::uint8_t> texel = i % 4 == 3 ? std::vector<std::uint8_t>(4, 0) : leaf;
+    image.texels.insert(image.texels.end(), texel.begin(), texel.end());
+  }
+  const std::vector<std::uint8_t> levels = coverage_levels(image);
+  // 4x2, 2x1 and 1x1 texels.
+  ASSERT_EQ(levels.size(), 4U * (8 + 2 + 1));
+  for (std::size_t i = 0; i < levels.size(); i += 4) {
+    EXPECT_EQ(std::vector(levels.begin() + std::ptrdiff_t(i), levels.begin() + std::ptrdiff_t(i) + 3),
+              std::vector(leaf.begin(), leaf.begin() + 3))
+        << "texel " << i / 4;
+  }
+  for (std::size_t i = 0; i < 8; i++) {
+    EXPECT_EQ(levels[4 * i + 3], image.texels[4 * i + 3]);
+  }
+  EXPECT_EQ(levels[4 * 8 + 3], 255);
+  EXPECT_EQ(levels[4 * 9 + 3], 128);
+  EXPECT_EQ(levels[4 * 10 + 3], 191);
+}
+
+TEST(CoverageLevels, AreMeansOfLightAlsoForOddEdges)
+{
+  // Opaque: the mean of the light of 0 and 255 is 187.5 / 255 encoded.
+  Image image{"odd", 3, 1, {0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 255}};
+  const std::vector<std::uint8_t> levels = coverage_levels(image);
+  ASSERT_EQ(levels.size(), 16U);
+  // A third of the light: 1.055 (1/3)^(1/2.4) - 0.055 = 0.6125.
+  EXPECT_EQ(levels[12], 156);
+  EXPECT_EQ(reduced(image, 1, ImageUse::Coverage).texels[0], 156);
+  // In a mean by alpha, the transparent texels do not count.
+  image.texels[3] = image.texels[7] = 0;
+  EXPECT_EQ(reduced(image, 1, ImageUse::Coverage).texels, (std::vector<std::uint8_t>{255, 255, 255, 85}));
+  EXPECT_EQ(reduced(image, 1, ImageUse::Color).texels[0], 156);
 }
 
 }  // namespace

@@ -320,8 +320,8 @@ Scene animated_scene()
   walking.translation_track = track(3, {0, 0, 0, 4, 0, 0});
   scene.animations.push_back({"walk",
                               {moved, morphed, walking},
-                              {{lamp, "intensity", glm::dvec3(1.0), track(1, {20, 40})},
-                               {material, "roughness", glm::dvec3(1.0), track(1, {1, 0.5F})}}});
+                              {{.target = lamp, .property = "intensity", .track = track(1, {20, 40})},
+                               {.target = material, .property = "roughness", .track = track(1, {1, 0.5F})}}});
   scene::deform_meshes(scene);
   return scene;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 /** The parts of read_picture(), which adds the file's name to what they throw. */
 namespace gnomon::cli {
@@ -31,7 +32,10 @@ inline void check_edges(std::int64_t width, std::int64_t height)
   return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
 }
 
-/** Nothing if \a path is not an EXR file. */
-[[nodiscard]] std::optional<Picture> read_exr_picture(const std::filesystem::path &path);
+/**
+ * The display window of an EXR file: pixels outside of the data window are black. Nothing if \a path is not an EXR
+ * file. \see read_picture
+ */
+[[nodiscard]] std::optional<Picture> read_exr_picture(const std::filesystem::path &path, const std::string &layer);
 
 }  // namespace gnomon::cli

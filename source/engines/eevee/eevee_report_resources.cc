@@ -175,16 +175,19 @@ FrameNode texture_nodes(const ReportSource &source)
   const auto read = read_images(source);
   const gpu::Texture none;
   for (const auto &[handle, image] : source.scene().images()) {
-    for (const bool is_color : {true, false}) {
-      const gpu::Texture *made = source.render_scene.images().find(handle, is_color);
-      // An image without a reader gets one node instead of two (colour and data).
-      const bool is_read = read.contains({handle, is_color});
-      if (!made && !is_read && (!is_color || read.contains({handle, false}))) {
+    using scene::ImageUse;
+    const auto is_read_as = [&, image_handle = handle](ImageUse use) { return read.contains({image_handle, use}); };
+    for (const ImageUse use : {ImageUse::Color, ImageUse::Coverage, ImageUse::Data}) {
+      const gpu::Texture *made = source.render_scene.images().find(handle, use);
+      const bool is_read = is_read_as(use);
+      // An image without a reader gets one node instead of three.
+      const bool is_first = use == ImageUse::Color && !is_read_as(ImageUse::Coverage) && !is_read_as(ImageUse::Data);
+      if (!made && !is_read && !is_first) {
         continue;
       }
       FrameNode &node = images.emplace_back(
           resource_node(source, made ? *made : none, image.name,
-                        is_color ? "colours that a material looks up" : "data that a material looks up",
+                        use == ImageUse::Data ? "data that a material looks up" : "colours that a material looks up",
                         !is_read                   ? "no object has a material that looks it up"
                         : !source.data.is_recorded ? nothing_seen
                                                    : "no lamp lights it, and it cuts nothing out"));

@@ -32,15 +32,16 @@ std::string why_no_shadow(const ReportSource &source, std::string_view no_such_l
   return std::string(eevee::why_no_shadow(FrameState{source.settings, source.data}, no_such_lamp));
 }
 
-std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const ReportSource &source)
+std::set<std::pair<scene::Handle<scene::Image>, scene::ImageUse>> read_images(const ReportSource &source)
 {
-  std::set<std::pair<scene::Handle<scene::Image>, bool>> images;
+  std::set<std::pair<scene::Handle<scene::Image>, scene::ImageUse>> images;
   for (const draw::ObjectIndex object : source.data.stl.objects) {
     const scene::Material &material = source.scene().material_of(source.mesh(object));
     for (const scene::TextureInput &input : scene::texture_inputs) {
       const scene::TextureSlot &slot = material.*input.slot;
       if (render_scene::is_drawable(source.scene(), source.mesh(object), slot)) {
-        images.emplace(source.scene().textures()[slot.texture].image, input.is_color);
+        images.emplace(source.scene().textures()[slot.texture].image,
+                       render_scene::use_of(source.scene(), material, input));
       }
     }
   }

@@ -49,7 +49,7 @@ struct ReportSource {
 [[nodiscard]] FrameNode folder(std::string what, std::string why, std::string why_not, std::vector<FrameNode> children);
 
 /** The images that the materials of drawable objects read. The bool is true for colours and false for data. */
-[[nodiscard]] std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const ReportSource &source);
+[[nodiscard]] std::set<std::pair<scene::Handle<scene::Image>, scene::ImageUse>> read_images(const ReportSource &source);
 
 /** \see why_no_shadow in eevee_frame.hh */
 [[nodiscard]] std::string why_no_shadow(const ReportSource &source, std::string_view no_such_lamp);

@@ -4,6 +4,7 @@
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_pointer.hh"
+#include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 
 #include <glm/geometric.hpp>
@@ -116,6 +117,13 @@ class AnimationImporter {
       return;
     }
     const std::optional<PointerParts> parts = parts_of(channel.pointer);
+    if (parts && parts->collection == "nodes" && parts->path == visibility_path) {
+      import_visibility_channel(sampler, parts->index, animation);
+      return;
+    }
+    if (parts && parts->collection == "materials" && import_transform_channel(sampler, *parts, animation)) {
+      return;
+    }
     if (parts && parts->collection == "nodes") {
       import_node_channel(sampler, parts->index, std::string(parts->path), node_places, animation);
       return;
@@ -125,6 +133,47 @@ class AnimationImporter {
       throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
     }
     import_value_channel(sampler, *parts, property, animation);
+  }
+
+  void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
+  {
+    if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
+      throw Fault("pointer", "its target is not in the scene");
+    }
+    AnimatedValue value;
+    value.target = things_.nodes[std::size_t(node)];
+    value.property = "is_visible";
+    value.track = track(sampler, 1, Model::ElementType::Scalar);
+    animation.values.push_back(value);
+  }
+
+  /** \return false if the pointer is not that of a transform of a texture. */
+  bool import_transform_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
+                                scene::Animation &animation)
+  {
+    const std::size_t split = parts.path.find(transform_path);
+    if (split == parts.path.npos) {
+      return false;
+    }
+    const std::string_view property = parts.path.substr(split + transform_path.size());
+    const std::string_view slot_path = parts.path.substr(0, split);
+    const auto *const name =
+        std::ranges::find_if(slot_names, [&](const SlotName &one) { return slot_path == path_of(one); });
+    if (name == slot_names.end() || (property != "offset" && property != "rotation" && property != "scale")) {
+      return false;
+    }
+    const auto found = things_.materials.find(parts.index);
+    if (found == things_.materials.end()) {
+      throw Fault("pointer", "its target is not in the scene");
+    }
+    AnimatedValue value;
+    value.target = found->second;
+    value.property = property == "offset" ? "offset" : property == "scale" ? "scale" : "rotation";
+    value.slot = scene::texture_inputs[std::size_t(name - slot_names.begin())].name;
+    value.track = property == "rotation" ? track(sampler, 1, Model::ElementType::Scalar)
+                                         : track(sampler, 2, Model::ElementType::Vec2);
+    animation.values.push_back(value);
+    return true;
   }
 
   /** Name of the property that the pointer animates; empty: none. */
@@ -209,8 +258,8 @@ class AnimationImporter {
     const auto add = [&](auto handle, const glm::dvec3 &factor) {
       value.target = handle;
       value.factor = factor;
-      animation.values.push_back(value);
       has_target = true;
+      scene::add_value(animation, value);
     };
     if (parts.collection == "materials") {
       if (const auto found = things_.materials.find(parts.index); found != things_.materials.end()) {
@@ -285,6 +334,7 @@ class AnimationImporter {
     }
     for (std::size_t i = 0; i < output.count(); i++) {
       const glm::vec4 value = type == Model::ElementType::Scalar ? glm::vec4(output.scalar(i))
+                              : type == Model::ElementType::Vec2 ? glm::vec4(output.vec2(i), 0.0F, 0.0F)
                               : type == Model::ElementType::Vec3 ? glm::vec4(output.vec3(i), 0.0F)
                                                                  : output.vec4(i);
       for (std::size_t k = 0; k < width / elements_of_value; k++) {

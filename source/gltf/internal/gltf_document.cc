@@ -191,6 +191,10 @@ class DocumentReader {
                         [&](const Place &at, const JsonValue &extension) {
                           read_members(at, extension, indices_.into_index("light", node.light, "lights"));
                         }},
+                 Member{"KHR_node_visibility",
+                        [&](const Place &at, const JsonValue &extension) {
+                          read_members(at, extension, into("visible", node.is_visible));
+                        }},
                  Member{"EXT_mesh_gpu_instancing", [&](const Place &at, const JsonValue &extension) {
                           Model::Instances &instances = node.instances.emplace();
                           read_members(

@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -109,7 +108,7 @@ std::vector<scene::Image> read_faces(const File &file, const Model::ImageLight &
     const Model::Image &image = element(file.model.images, index, what + ": image of a face");
     const std::string name = label("image", image.name, static_cast<std::size_t>(index));
     const EncodedImage encoded = encoded_image(file, image, name);
-    ImageDecoder decoder(encoded.bytes, name, std::numeric_limits<std::uint64_t>::max());
+    ImageDecoder decoder(encoded.bytes, name);
     if (decoder.texel_count() > environment_texel_count_max) {
       throw Fault(name, "is too large for a face of an image-based light, which may have 2048x2048 texels");
     }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -141,6 +142,47 @@ Chunks split_glb(ByteSpan bytes, Warnings &warnings)
     warnings.add("GLB", "bytes after the last chunk are not read: " + std::to_string(length - offset));
   }
   return {*json, binary.value_or(ByteSpan())};
+}
+
+/** \throws Fault with advice if the file is one of another program or format that people have in place of glTF. */
+void refuse_others(const std::filesystem::path &path, ByteSpan bytes)
+{
+  struct Other {
+    std::string_view extension;
+    std::string_view name;
+    /** First bytes; empty: not known by them. */
+    std::string_view magic{};
+  };
+  static constexpr std::array<Other, 14> others = {{{".blend", "Blender", "BLENDER"},
+                                                    {".fbx", "FBX", "Kaydara FBX Binary"},
+                                                    {".obj", "Wavefront OBJ"},
+                                                    {".dae", "COLLADA"},
+                                                    {".stl", "STL"},
+                                                    {".ply", "PLY", "ply\n"},
+                                                    {".abc", "Alembic", "Ogawa"},
+                                                    {".usd", "USD", "PXR-USDC"},
+                                                    {".usda", "USD", "#usda"},
+                                                    {".usdc", "USD"},
+                                                    {".usdz", "USD"},
+                                                    {".3ds", "3D Studio"},
+                                                    {".max", "3ds Max"},
+                                                    {".ma", "Maya"}}};
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  const std::string_view first(reinterpret_cast<const char *>(bytes.data()), std::min<std::size_t>(bytes.size(), 32));
+  const auto is_first = [](char c) { return c == '{' || c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
+  const bool is_json = !first.empty() && is_first(first.front());
+  for (const Other &other : others) {
+    const bool is_known = !other.magic.empty() && first.starts_with(other.magic);
+    if (is_known || (extension == other.extension && !is_json)) {
+      const bool is_blend = other.extension == ".blend";
+      throw Fault("file",
+                  std::string("is of the format ") + std::string(other.name) + ", and not glTF 2.0: " +
+                      (is_blend ? "open it in Blender" : "import it into Blender or another program") +
+                      " and export it as glTF 2.0 (in Blender: File > Export > glTF 2.0, with Cameras and Punctual "
+                      "Lights included)");
+    }
+  }
 }
 
 /** The value of two hexadecimal digits; negative for other characters. */
@@ -378,6 +420,9 @@ File load_file(const std::filesystem::path &path, const std::filesystem::path &o
   const std::size_t size = storage.size();
   storage.resize(size + document_padding());
   const ByteSpan bytes = ByteSpan(storage).first(size);
+  if (!is_glb(bytes)) {
+    refuse_others(path, bytes);
+  }
   const Chunks chunks = is_glb(bytes) ? split_glb(bytes, warnings) : Chunks{bytes, {}};
   file.model = parse_document(chunks.json, warnings);
   file.base.folder = path.parent_path();

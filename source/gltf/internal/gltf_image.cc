@@ -3,6 +3,7 @@
 
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_report.hh"
+#include "scene_image.hh"
 
 namespace gnomon::gltf {
 
@@ -10,6 +11,8 @@ namespace {
 
 /** Texture size limit of all current GPUs. */
 constexpr std::uint32_t edge_max = 16384;
+/** Limit of the texels of one image, which are decoded at once: 1 GiB. */
+constexpr std::uint64_t image_texel_count_max = std::uint64_t(edge_max) * edge_max;
 /**
  * Largest ratio of decoded to encoded bytes. Deflate: 1032. JPEG: smaller, as 64 samples take at least two bits in each
  * channel. WebP has none: a code of one symbol takes no bits.
@@ -32,7 +35,7 @@ EncodedImage encoded_image(const File &file, const Model::Image &image, const st
   return encoded;
 }
 
-ImageDecoder::ImageDecoder(std::span<const unsigned char> bytes, std::string what, std::uint64_t texel_count_max)
+ImageDecoder::ImageDecoder(std::span<const unsigned char> bytes, std::string what, std::uint32_t size_max)
     : what_(std::move(what))
 {
   try {
@@ -41,17 +44,20 @@ ImageDecoder::ImageDecoder(std::span<const unsigned char> bytes, std::string wha
   catch (const image::Error &error) {
     throw Fault(what_, printable(error.what()));
   }
-  const std::string size = std::to_string(file_->width()) + 'x' + std::to_string(file_->height());
-  if (file_->width() > edge_max || file_->height() > edge_max) {
-    throw Fault(what_, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max));
+  const std::string size = size_text();
+  const glm::uvec2 full(file_->width(), file_->height());
+  const glm::uvec2 kept = size_max > 0 ? scene::reduced_size(full, size_max) : full;
+  if (kept.x > edge_max || kept.y > edge_max) {
+    throw Fault(what_, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max) +
+                           " unless a limit of the texture size reduces it");
   }
-  if (texel_count() > texel_count_max) {
-    throw Fault(what_, "is too large, " + size + " texels: " + std::to_string(texel_count_max) +
-                           " are left of those that all images may have");
+  if (texel_count() > image_texel_count_max) {
+    throw Fault(what_, "is too large, " + size + " texels: an image may have " + std::to_string(image_texel_count_max));
   }
   if (image::format_of(bytes) != image::Format::Webp && texel_count() / 8 / expansion_max > bytes.size()) {
     throw Fault(what_, "is cut off: " + size + " texels cannot be in " + std::to_string(bytes.size()) + " bytes");
   }
+  kept_texel_count_ = std::uint64_t(kept.x) * kept.y;
 }
 
 scene::Image ImageDecoder::read()

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <string>
 
 namespace gnomon::gltf {
@@ -23,6 +22,15 @@ namespace {
 
 /** Number of uv sets of a mesh. \see scene::TextureSlot::uv_set */
 constexpr std::size_t uv_sets_max = 2;
+
+/** The textures whose uv sets are kept before those of others. */
+constexpr std::array by_importance{
+    &Material::base_color_texture,     &Material::emissive_texture,           &Material::normal_texture,
+    &Material::transmission_texture,   &Material::metallic_roughness_texture, &Material::coat_texture,
+    &Material::sheen_color_texture,    &Material::anisotropy_texture,         &Material::specular_color_texture,
+    &Material::specular_texture,       &Material::occlusion_texture,          &Material::coat_normal_texture,
+    &Material::coat_roughness_texture, &Material::sheen_roughness_texture,    &Material::thickness_texture};
+static_assert(by_importance.size() == slot_names.size());
 
 /** Reads one material; every message names it. */
 class MaterialReader {
@@ -202,21 +210,7 @@ class MaterialReader {
   {
     result_.normal_scale = limited("normalTexture.scale", source_.normal_scale);
     result_.occlusion_strength = clamped("occlusionTexture.strength", source_.occlusion_strength, 1.0);
-    std::set<int> sets;
-    for (const SlotName &name : slot_names) {
-      const Model::TextureSlot &slot = source_.*name.source;
-      if (slot.index >= 0 && is_read(name)) {
-        sets.insert(slot.set);
-      }
-    }
-    // A surface function may read both sets.
-    for (int set = 0; !source_.surface_uri.empty() && set < 2 && sets.size() < uv_sets_max; set++) {
-      sets.insert(set);
-    }
-    uv_sets_.assign(sets.begin(), sets.end());
-    if (uv_sets_.size() > uv_sets_max) {
-      uv_sets_.resize(uv_sets_max);
-    }
+    choose_uv_sets();
     for (const SlotName &name : slot_names) {
       const Model::TextureSlot &slot = source_.*name.source;
       if (slot.index >= 0 && is_read(name)) {
@@ -225,13 +219,63 @@ class MaterialReader {
     }
   }
 
+  /**
+   * The sets of the textures that are read, the most important ones if there are more than a mesh has. A texture
+   * without an effect has the importance of the last.
+   */
+  void choose_uv_sets()
+  {
+    const auto add = [&](int set) {
+      if (uv_sets_.size() < uv_sets_max && std::ranges::find(uv_sets_, set) == uv_sets_.end()) {
+        uv_sets_.push_back(set);
+      }
+    };
+    for (const bool has_effect : {true, false}) {
+      for (TextureSlot Material::*const target : by_importance) {
+        const auto &name = *std::ranges::find(slot_names, target, &SlotName::target);
+        const Model::TextureSlot &slot = source_.*name.source;
+        if (slot.index >= 0 && is_read(name) && this->has_effect(name) == has_effect) {
+          add(slot.set);
+        }
+      }
+    }
+    // A surface function may read both sets.
+    for (int set = 0; !source_.surface_uri.empty() && set < int(uv_sets_max); set++) {
+      add(set);
+    }
+    std::ranges::sort(uv_sets_);
+  }
+
+  /** Whether the texture may change a pixel. */
+  [[nodiscard]] bool has_effect(const SlotName &name) const
+  {
+    if (!source_.surface_uri.empty()) {
+      return true;
+    }
+    if (name.target == &Material::emissive_texture) {
+      return result_.emissive != glm::vec3(0.0F) && !source_.is_unlit;
+    }
+    if (name.target == &Material::normal_texture) {
+      return result_.normal_scale != 0.0F && !source_.is_unlit;
+    }
+    if (name.target == &Material::occlusion_texture) {
+      return result_.occlusion_strength > 0.0F && !source_.is_unlit;
+    }
+    if (name.target == &Material::specular_texture || name.target == &Material::specular_color_texture) {
+      return result_.specular > 0.0F && result_.metallic < 1.0F && !source_.is_unlit;
+    }
+    return name.target == &Material::base_color_texture || !source_.is_unlit;
+  }
+
   TextureSlot read_slot(const SlotName &name, const Model::TextureSlot &slot)
   {
     TextureSlot result;
     try {
       const auto set = std::find(uv_sets_.begin(), uv_sets_.end(), slot.set);
       if (set == uv_sets_.end()) {
-        throw Fault("texCoord", std::to_string(slot.set) + " is a third set of texture coordinates");
+        throw Fault("texCoord", std::to_string(slot.set) +
+                                    " is a third set of texture coordinates, and two of more "
+                                    "important textures are kept");
       }
       result.uv_set = static_cast<int>(set - uv_sets_.begin());
       const bool is_glossiness = source_.glossiness && name.target == &Material::metallic_roughness_texture;
@@ -256,8 +300,12 @@ class MaterialReader {
 
 }  // namespace
 
-MaterialImporter::MaterialImporter(const File &file, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), scene_(scene), textures_(file, warnings, scene), stand_ins_(scene)
+MaterialImporter::MaterialImporter(const File &file, std::uint32_t texture_size_max, Warnings &warnings, Scene &scene)
+    : file_(file),
+      warnings_(warnings),
+      scene_(scene),
+      textures_(file, texture_size_max, warnings, scene),
+      stand_ins_(scene)
 {
 }
 
@@ -337,9 +385,9 @@ Handle<scene::SurfaceFunction> MaterialImporter::surface_function(const std::str
   return place->second;
 }
 
-void MaterialImporter::finish(std::uint32_t texture_size_max, Progress &progress)
+void MaterialImporter::finish(Progress &progress)
 {
-  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode(texture_size_max, progress);
+  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode(progress);
   if (damaged.empty()) {
     return;
   }

@@ -47,8 +47,13 @@ const scene::TextureSlot *tangent_slot(const scene::Material &material)
 
 }  // namespace
 
-MeshImporter::MeshImporter(const File &file, Progress &progress, Warnings &warnings, Scene &scene)
-    : file_(file), progress_(progress), warnings_(warnings), scene_(scene), materials_(file, warnings, scene)
+MeshImporter::MeshImporter(const File &file, std::uint32_t texture_size_max, Progress &progress, Warnings &warnings,
+                           Scene &scene)
+    : file_(file),
+      progress_(progress),
+      warnings_(warnings),
+      scene_(scene),
+      materials_(file, texture_size_max, warnings, scene)
 {
 }
 
@@ -117,7 +122,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
   /** The uvs are not those of a texture. */
   bool has_uvs_for_tangents = false;
   try {
-    PrimitiveReader reader(file_, primitive, what, warnings_);
+    PrimitiveReader reader(file_, primitive, what, warnings_, deforming_skin.has_value());
     spend(reader.element_count());
     mesh = reader.read();
     if (!mesh.indices.empty()) {

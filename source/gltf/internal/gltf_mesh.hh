@@ -20,8 +20,9 @@ namespace gnomon::gltf {
 /** Adds meshes to a scene, one for each glTF primitive, at its first use. */
 class MeshImporter {
  public:
-  /** All references must outlive the importer. */
-  MeshImporter(const File &file, Progress &progress, Warnings &warnings, scene::Scene &scene);
+  /** All references must outlive the importer. \a texture_size_max: \see ImportOptions */
+  MeshImporter(const File &file, std::uint32_t texture_size_max, Progress &progress, Warnings &warnings,
+               scene::Scene &scene);
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
   [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
@@ -38,10 +39,10 @@ class MeshImporter {
     return materials_.handles();
   }
 
-  /** Decodes the images of materials. Call it once, at the end. \a texture_size_max: \see ImportOptions */
-  void finish(std::uint32_t texture_size_max)
+  /** Decodes the images of materials. Call it once, at the end. */
+  void finish()
   {
-    materials_.finish(texture_size_max, progress_);
+    materials_.finish(progress_);
   }
   /** Images that finish() decodes. */
   [[nodiscard]] std::size_t image_count() const

@@ -117,6 +117,8 @@ struct Model {
     int camera = -1;
     int skin = -1;
     int light = -1;
+    /** KHR_node_visibility: of the node and its descendants. */
+    bool is_visible = true;
     std::optional<Instances> instances;
     /** Override the mesh's weights; empty if absent. */
     std::vector<double> weights;

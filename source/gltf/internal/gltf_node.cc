@@ -44,6 +44,7 @@ void read_flags(const Model::Node &source, int index, scene::Node &node)
       node.*row.member = *value;
     }
   });
+  node.is_visible = node.is_visible && source.is_visible;
 }
 
 bool is_rotation(const glm::dvec4 &xyzw)

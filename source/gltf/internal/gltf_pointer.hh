@@ -14,6 +14,12 @@ inline constexpr std::string_view light_pointer_prefix = "/extensions/KHR_lights
 /** A number that multiplies the emissive factor. */
 inline constexpr std::string_view strength_path = "extensions/KHR_materials_emissive_strength/emissiveStrength";
 
+/** Path of a node's visibility: whether the node and its descendants are drawn. */
+inline constexpr std::string_view visibility_path = "extensions/KHR_node_visibility/visible";
+
+/** Between the path of a texture slot and a member of its transform. */
+inline constexpr std::string_view transform_path = "/extensions/KHR_texture_transform/";
+
 /** Calls \a visit with the collection and the row of each property that pointers may animate. */
 template <typename Visit>
 void for_each_animated(Visit &&visit)

@@ -54,9 +54,12 @@ glm::dvec3 area_vector(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &
   return glm::cross(glm::dvec3(b) - origin, glm::dvec3(c) - origin);
 }
 
-/** \a vector must not be zero. Its squared length may leave double's range. */
+/** +Z for a vector of length 0. The squared length may leave double's range. */
 glm::vec3 unit(const glm::dvec3 &vector)
 {
+  if (vector == glm::dvec3(0.0)) {
+    return {0.0F, 0.0F, 1.0F};
+  }
   const glm::dvec3 size = glm::abs(vector);
   return glm::vec3(glm::normalize(vector / std::max({size.x, size.y, size.z})));
 }
@@ -72,11 +75,12 @@ std::uint32_t vertex_count(std::size_t count)
 }  // namespace
 
 PrimitiveReader::PrimitiveReader(const File &file, const Model::Primitive &primitive, std::string what,
-                                 Warnings &warnings)
+                                 Warnings &warnings, bool is_deformed)
     : file_(file),
       primitive_(primitive),
       what_(std::move(what)),
       warnings_(warnings),
+      is_deformed_(is_deformed),
       positions_(file, position_accessor(), vec3_type)
 {
   const std::optional<Topology> topology = topology_of(primitive.mode);
@@ -84,9 +88,8 @@ PrimitiveReader::PrimitiveReader(const File &file, const Model::Primitive &primi
     throw Fault("mode", std::to_string(primitive.mode) + " is unknown");
   }
   topology_ = *topology;
-  if (positions_.is_all_zero()) {
-    throw Fault("POSITION", primitive_.compression.empty() ? "holds no data"
-                                                           : "is compressed by " + printable(primitive_.compression));
+  if (positions_.is_all_zero() && !primitive_.compression.empty()) {
+    throw Fault("POSITION", "is compressed by " + printable(primitive_.compression));
   }
   if (primitive.indices >= 0) {
     indices_.emplace(file, primitive.indices, Model::ElementType::Scalar);
@@ -306,10 +309,14 @@ bool PrimitiveReader::is_left_out(const Element &element)
   }
   bool is_flat = false;
   if constexpr (std::is_same_v<Element, Triangle>) {
+    const auto [a, b, c] = element;
+    if (is_deformed_ && a != b && b != c && c != a) {
+      return false;
+    }
     is_flat = area_vector(corners[0], corners[1], corners[2]) == glm::dvec3(0.0);
   }
   else if constexpr (std::is_same_v<Element, Line>) {
-    is_flat = corners[0] == corners[1];
+    is_flat = corners[0] == corners[1] && (!is_deformed_ || element[0] == element[1]);
   }
   losses_.flat += is_flat ? 1 : 0;
   return is_flat;

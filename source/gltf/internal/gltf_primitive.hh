@@ -20,7 +20,12 @@ namespace gnomon::gltf {
 /** Converts one primitive to a Mesh. */
 class PrimitiveReader {
  public:
-  PrimitiveReader(const File &file, const Model::Primitive &primitive, std::string what, Warnings &warnings);
+  /**
+   * \a is_deformed: morph targets or joints move the vertices, so that triangles without area and lines without length
+   * are kept.
+   */
+  PrimitiveReader(const File &file, const Model::Primitive &primitive, std::string what, Warnings &warnings,
+                  bool is_deformed);
 
   [[nodiscard]] std::uint64_t element_count() const;
 
@@ -55,6 +60,7 @@ class PrimitiveReader {
   const Model::Primitive &primitive_;
   std::string what_;
   Warnings &warnings_;
+  bool is_deformed_;
   AccessorReader positions_;
   std::optional<AccessorReader> normals_;
   /** Empty for a primitive without indices. */

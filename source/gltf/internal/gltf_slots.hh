@@ -5,6 +5,7 @@
 #include "internal/gltf_report.hh"
 #include "scene.hh"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -100,6 +101,24 @@ inline constexpr std::array<SlotName, 15> slot_names = {{
      {255, 255, 255, 255},
      "the factor alone"},
 }};
+
+/** Place of a slot in a material of glTF, with '/' between keys. */
+[[nodiscard]] inline std::string path_of(const SlotName &slot)
+{
+  constexpr std::array<std::array<std::string_view, 2>, 9> places{
+      {{"baseColor", "pbrMetallicRoughness/"},
+       {"metallicRoughness", "pbrMetallicRoughness/"},
+       {"specular", "extensions/KHR_materials_specular/"},
+       {"clearcoat", "extensions/KHR_materials_clearcoat/"},
+       {"sheen", "extensions/KHR_materials_sheen/"},
+       {"anisotropy", "extensions/KHR_materials_anisotropy/"},
+       {"transmission", "extensions/KHR_materials_transmission/"},
+       {"thickness", "extensions/KHR_materials_volume/"},
+       {"", ""}}};
+  const auto *const place =
+      std::ranges::find_if(places, [&](const auto &one) { return slot.name.starts_with(one[0]); });
+  return std::string((*place)[1]) + std::string(slot.name);
+}
 
 /** Text of the warning about a slot with a stand-in. */
 [[nodiscard]] inline std::string reason_of(const SlotName &slot, const Fault &fault)

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <set>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -26,10 +26,11 @@ using scene::TextureWrap;
 namespace {
 
 /**
- * Limit of texels. Millions of texels may be compressed to a few kilobytes, so the size of the file does not limit
- * them.
+ * Limits of the texels of all images, after and before they are reduced: 2 GiB, and the time for 16 of the largest
+ * images. Millions of texels may be compressed to a few kilobytes, so the size of the file does not limit them.
  */
-constexpr std::uint64_t scene_texel_count_max = std::uint64_t(1) << 27U;
+constexpr std::uint64_t scene_texel_count_max = std::uint64_t(1) << 29U;
+constexpr std::uint64_t decoded_texel_count_max = std::uint64_t(1) << 32U;
 
 /** Reads one sampler. Unknown values are replaced by those of a texture without a sampler. */
 class SamplerReader {
@@ -92,9 +93,23 @@ class SamplerReader {
 
 }  // namespace
 
-TextureImporter::TextureImporter(const File &file, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), scene_(scene)
+TextureImporter::TextureImporter(const File &file, std::uint32_t size_max, Warnings &warnings, Scene &scene)
+    : file_(file), size_max_(size_max), warnings_(warnings), scene_(scene)
 {
+}
+
+void TextureImporter::spend(const ImageDecoder &decoder)
+{
+  const auto check = [&](std::uint64_t count, std::uint64_t spent, std::uint64_t max) {
+    if (count > max - spent) {
+      throw Fault(decoder.what(), "is too large, " + decoder.size_text() + " texels: " + std::to_string(max - spent) +
+                                      " are left of those that all images may have");
+    }
+  };
+  check(decoder.kept_texel_count(), texel_count_, scene_texel_count_max);
+  check(decoder.texel_count(), decoded_texel_count_, decoded_texel_count_max);
+  texel_count_ += decoder.kept_texel_count();
+  decoded_texel_count_ += decoder.texel_count();
 }
 
 Handle<Texture> TextureImporter::handle_of(int gltf_texture)
@@ -122,12 +137,8 @@ Handle<Texture> TextureImporter::roughness_of(int gltf_texture, double glossines
   const Handle<Image> source = texture.image;
   const auto decoded = std::ranges::find(pending_, source, &Pending::handle);
   if (decoded != pending_.end()) {
-    const std::uint64_t texel_count = decoded->decoder.texel_count();
-    if (texel_count > scene_texel_count_max - texel_count_) {
-      throw Fault("its image", "is too large for an image of roughness: all images together may have " +
-                                   std::to_string(scene_texel_count_max) + " texels");
-    }
-    texel_count_ += texel_count;
+    // An image of roughness is as large.
+    spend(decoded->decoder);
   }
   texture.image = scene_.add(Image{"roughness of " + scene_.images()[source].name, 1, 1, {0, 0, 0, 0}});
   derived_.push_back({texture.image, source, glossiness});
@@ -186,32 +197,33 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
   const Model::Image &source = file_.model.images[gltf_image];
   const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
   EncodedImage encoded = encoded_image(file_, source, what);
-  ImageDecoder decoder(encoded.bytes, what, scene_texel_count_max - texel_count_);
-  texel_count_ += decoder.texel_count();
+  ImageDecoder decoder(encoded.bytes, what, size_max_);
+  spend(decoder);
   const Handle<Image> handle =
       scene_.add(Image{source.name.empty() ? "image " + std::to_string(gltf_image) : source.name, 1, 1, {0, 0, 0, 0}});
   pending_.push_back({handle, std::move(encoded.storage), std::move(decoder)});
   return handle;
 }
 
-/** The images that materials of \a scene use for colours. */
-static std::set<Handle<Image>> color_images(const Scene &scene)
+/** The images that materials of \a scene use for colours. Coverage counts before Color. */
+static std::map<Handle<Image>, scene::ImageUse> color_images(const Scene &scene)
 {
-  std::set<Handle<Image>> images;
+  std::map<Handle<Image>, scene::ImageUse> images;
   for (const auto &[handle, material] : scene.materials()) {
     for (const scene::TextureInput &input : scene::texture_inputs) {
       const Texture *texture = scene.textures().find((material.*input.slot).texture);
       if (texture != nullptr && input.is_color) {
-        images.insert(texture->image);
+        scene::ImageUse &use = images.try_emplace(texture->image, scene::ImageUse::Color).first->second;
+        use = std::max(use, scene::use_of(material, input));
       }
     }
   }
   return images;
 }
 
-std::map<Handle<Image>, Fault> TextureImporter::decode(std::uint32_t size_max, Progress &progress)
+std::map<Handle<Image>, Fault> TextureImporter::decode(Progress &progress)
 {
-  const std::set<Handle<Image>> colors = color_images(scene_);
+  const std::map<Handle<Image>, scene::ImageUse> colors = color_images(scene_);
   std::vector<std::variant<Image, Fault>> results(pending_.size());
   const std::thread::id importing_thread = std::this_thread::get_id();
   std::atomic<std::size_t> done = 0;
@@ -223,8 +235,9 @@ std::map<Handle<Image>, Fault> TextureImporter::decode(std::uint32_t size_max, P
     const trace::Span span("decode image", scene_.images()[pending_[i].handle].name);
     try {
       Image image = pending_[i].decoder.read();
-      const bool is_color = colors.contains(pending_[i].handle);
-      results[i] = size_max > 0 ? reduced(std::move(image), size_max, is_color) : std::move(image);
+      const auto color = colors.find(pending_[i].handle);
+      const scene::ImageUse use = color == colors.end() ? scene::ImageUse::Data : color->second;
+      results[i] = size_max_ > 0 ? reduced(std::move(image), size_max_, use) : std::move(image);
     }
     catch (const Fault &fault) {
       results[i] = fault;

@@ -23,8 +23,8 @@ namespace gnomon::gltf {
  */
 class TextureImporter {
  public:
-  /** All references must outlive the importer. */
-  TextureImporter(const File &file, Warnings &warnings, scene::Scene &scene);
+  /** All references must outlive the importer. \a size_max: \see ImportOptions::texture_size_max */
+  TextureImporter(const File &file, std::uint32_t size_max, Warnings &warnings, scene::Scene &scene);
 
   /**
    * The scene's texture for a texture of the file, whose index may be out of range. Its image has one texel until
@@ -41,10 +41,10 @@ class TextureImporter {
   [[nodiscard]] scene::Handle<scene::Texture> roughness_of(int gltf_texture, double glossiness);
 
   /**
-   * Decodes all images, on all processors. \a size_max: \see ImportOptions::texture_size_max
+   * Decodes all images, on all processors.
    * \return the damaged images, with the reason.
    */
-  [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode(std::uint32_t size_max, Progress &progress);
+  [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode(Progress &progress);
   /** Images that decode() decodes. */
   [[nodiscard]] std::size_t image_count() const
   {
@@ -67,6 +67,7 @@ class TextureImporter {
   };
 
   const File &file_;
+  std::uint32_t size_max_;
   Warnings &warnings_;
   scene::Scene &scene_;
   std::map<int, scene::Handle<scene::Texture>> handle_of_;
@@ -75,8 +76,12 @@ class TextureImporter {
   /** By URI and buffer view, because several images may refer to the same data. */
   std::map<std::pair<std::string, int>, std::variant<scene::Handle<scene::Image>, Fault>> image_of_;
   std::vector<Pending> pending_;
-  /** Texels of all images so far. */
+  /** Texels of all images so far, after and before they are reduced. */
   std::uint64_t texel_count_ = 0;
+  std::uint64_t decoded_texel_count_ = 0;
+
+  /** Adds the texels of an image. \throws Fault that names the image, if all have too many */
+  void spend(const ImageDecoder &decoder);
 
   /** The image of EXT_texture_webp; the texture's other one if that is absent, or its header cannot be read. */
   scene::Handle<scene::Image> image_of(const Model::Texture &texture, const std::string &what);

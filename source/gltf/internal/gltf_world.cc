@@ -144,13 +144,17 @@ class WorldImporter {
     return world;
   }
 
-  /** What \a read returns. \throws LeftOut if it fails, or if the texels are those of no picture */
+  /** The picture of \a read. \throws LeftOut if it fails, or if the texels are those of no picture */
   template <typename Read>
-  static std::shared_ptr<const WorldPicture> usable(const Read &read)
+  std::shared_ptr<const WorldPicture> usable(const Read &read) const
   {
     try {
+      WorldPicture picture = read();
+      if (const std::string clamped = clamp_radiances(picture); !clamped.empty()) {
+        warnings_.add("world", "its picture: " + clamped);
+      }
       World world;
-      world.picture = std::make_shared<const WorldPicture>(read());
+      world.picture = std::make_shared<const WorldPicture>(std::move(picture));
       if (const std::string fault = fault_of(world); !fault.empty()) {
         throw LeftOut(fault);
       }

@@ -4,6 +4,7 @@
 #include "internal/gltf_model.hh"
 #include "internal/gltf_pointer.hh"
 #include "internal/gltf_report.hh"
+#include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 #include "internal/gltf_write_mesh.hh"
 
@@ -70,8 +71,9 @@ class AnimationWriter {
       const AnimatedValue &value = animation.values[i];
       // scene::pose sets a property to the last of its values; glTF allows one.
       const bool is_last = std::none_of(
-          animation.values.begin() + std::ptrdiff_t(i) + 1, animation.values.end(),
-          [&](const AnimatedValue &later) { return later.target == value.target && later.property == value.property; });
+          animation.values.begin() + std::ptrdiff_t(i) + 1, animation.values.end(), [&](const AnimatedValue &later) {
+            return later.target == value.target && later.property == value.property && later.slot == value.slot;
+          });
       if (is_last) {
         add_value(value);
       }
@@ -147,6 +149,30 @@ class AnimationWriter {
     if (!index) {
       return;
     }
+    if (std::holds_alternative<Handle<scene::Node>>(value.target)) {
+      std::vector<std::uint8_t> flags;
+      for (const float number : value.track->values) {
+        flags.push_back(number >= 0.5F ? 1 : 0);
+      }
+      add_pointer(*value.track, buffer_.add_accessor(flags, Model::UnsignedByte, "SCALAR"),
+                  "/nodes/" + std::to_string(*index) + '/' + std::string(visibility_path));
+      return;
+    }
+    if (!value.slot.empty()) {
+      const auto *const input = std::ranges::find(scene::texture_inputs, value.slot, &scene::TextureInput::name);
+      const SlotName &slot = slot_names[std::size_t(input - scene::texture_inputs.begin())];
+      add_pointer(*value.track, output(value.track->values, value.track->width),
+                  "/materials/" + std::to_string(*index) + '/' + path_of(slot) + std::string(transform_path) +
+                      std::string(value.property));
+      return;
+    }
+    if (value.strength_track) {
+      const std::string material = "/materials/" + std::to_string(*index) + '/';
+      add_pointer(*value.track, output(value.track->values, 3), material + "emissiveFactor");
+      add_pointer(*value.strength_track, output(value.strength_track->values, 1),
+                  material + std::string(strength_path));
+      return;
+    }
     // The importer multiplies the numbers in the file by the unit. A strength has one number, and its property three.
     const std::size_t width = scene::width_of(value.property);
     const std::vector<float> &source = value.track->values;
@@ -164,7 +190,12 @@ class AnimationWriter {
                std::to_string(*index) + '/' + std::string(row.path);
       }
     });
-    add_channel(*value.track, output(values, width),
+    add_pointer(*value.track, output(values, width), path);
+  }
+
+  void add_pointer(const scene::Track &track, int output, const std::string &path)
+  {
+    add_channel(track, output,
                 R"({"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":")" + path + "\"}}}");
     has_pointers = true;
   }
@@ -182,6 +213,9 @@ class AnimationWriter {
           }
           else if constexpr (std::is_same_v<decltype(handle), Handle<scene::Lamp>>) {
             return find_in(indices_.lights);
+          }
+          else if constexpr (std::is_same_v<decltype(handle), Handle<scene::Node>>) {
+            return find_in(indices_.nodes);
           }
           else {
             return find_in(indices_.cameras);
@@ -205,6 +239,7 @@ class AnimationWriter {
   int output(const std::vector<float> &values, std::size_t width)
   {
     switch (width) {
+      case 2: return buffer_.add_accessor(grouped<glm::vec2>(values), Model::Float, "VEC2");
       case 3: return buffer_.add_accessor(grouped<glm::vec3>(values), Model::Float, "VEC3");
       case 4: return buffer_.add_accessor(grouped<glm::vec4>(values), Model::Float, "VEC4");
       default: return buffer_.add_accessor(values, Model::Float, "SCALAR");

@@ -176,7 +176,9 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle, bool is_deformed)
   if (mesh.topology != scene::Topology::Triangles) {
     place->second.add("mode", std::to_string(mesh.topology == scene::Topology::Lines ? Model::Lines : Model::Points));
   }
-  place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
+  place->second.add("indices",
+                    std::to_string(buffer_.add_accessor(deformed ? rest_indices(mesh, *deformed) : mesh.indices,
+                                                        Model::UnsignedInt, "SCALAR")));
   if (scene_.materials().is_live(mesh.material)) {
     place->second.add("material", std::to_string(material(mesh.material)));
   }

@@ -401,7 +401,12 @@ void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byt
   const GlFormat format = gl_format(desc.format);
   switch (desc.kind) {
     case TextureKind::Flat:
-      glTextureSubImage2D(name, 0, 0, 0, desc.width, desc.height, format.format, format.type, texels.data());
+      for (int level = 0; !texels.empty(); level++) {
+        const int width = std::max(desc.width >> level, 1);
+        const int height = std::max(desc.height >> level, 1);
+        glTextureSubImage2D(name, level, 0, 0, width, height, format.format, format.type, texels.data());
+        texels = texels.subspan(std::size_t(width) * std::size_t(height) * std::size_t(texel_size_bytes(desc.format)));
+      }
       break;
     case TextureKind::Array:
       glTextureSubImage3D(name, 0, 0, 0, layer, desc.width, desc.height, 1, format.format, format.type, texels.data());

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// Reads pictures from EXR files of any windows, layers, parts and numbers.
+#include "internal/cli_picture_formats.hh"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/vec3.hpp>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfRgbaFile.h>
+#include <ImfTestFile.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** Channels of a part whose names differ after the last point only. */
+struct ExrLayer {
+  int part = 0;
+  /** For people: the names of the part and of the layer. Empty: the layer without a name of the only part. */
+  std::string label;
+  /** Name of the layer in its part. */
+  std::string name;
+  /** Full names of red, green and blue, or three times that of luminance. */
+  std::array<std::string, 3> channels;
+  /** Luminance with chroma (RY and BY). */
+  bool has_chroma = false;
+};
+
+/** The layers of a part that are pictures, by name. */
+std::vector<ExrLayer> layers_of(const Imf::Header &header, int part, bool is_only_part)
+{
+  std::map<std::string, std::map<std::string, std::string>> channels_of;
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+    const std::string full = channel.name();
+    const std::size_t point = full.rfind('.');
+    std::string last = full.substr(point == full.npos ? 0 : point + 1);
+    std::ranges::transform(last, last.begin(), [](char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; });
+    channels_of[point == full.npos ? "" : full.substr(0, point)].emplace(last, full);
+  }
+  std::vector<ExrLayer> layers;
+  for (const auto &[name, channels] : channels_of) {
+    const auto has = [&, &of = channels](const char *channel) { return of.contains(channel); };
+    ExrLayer layer;
+    layer.part = part;
+    layer.label = layer.name = name;
+    if (has("R") && has("G") && has("B")) {
+      layer.channels = {channels.at("R"), channels.at("G"), channels.at("B")};
+    }
+    else if (has("Y")) {
+      layer.channels.fill(channels.at("Y"));
+      layer.has_chroma = has("RY") && has("BY");
+    }
+    else {
+      continue;
+    }
+    if (!is_only_part && header.hasName()) {
+      layer.label = name.empty() ? header.name() : header.name() + '.' + name;
+    }
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+std::string names_of(const std::vector<ExrLayer> &layers)
+{
+  std::vector<std::string> names;
+  for (const ExrLayer &layer : layers) {
+    names.push_back(layer.label.empty() ? "the one without a name" : '\'' + layer.label + '\'');
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/** The layer of that label. Without one, the layer without a name, or the only one. */
+ExrLayer chosen(const std::vector<ExrLayer> &layers, const std::string &label)
+{
+  if (!label.empty()) {
+    const auto found = std::ranges::find_if(
+        layers, [&](const ExrLayer &layer) { return layer.label == label || layer.name == label; });
+    if (found == layers.end()) {
+      throw std::runtime_error(fmt::format("has no layer '{}'; it has: {}", label, names_of(layers)));
+    }
+    return *found;
+  }
+  const auto is_unnamed = [](const ExrLayer &layer) { return layer.name.empty(); };
+  const auto found = std::ranges::find_if(layers, is_unnamed);
+  if (std::ranges::count_if(layers, is_unnamed) == 1) {
+    return *found;
+  }
+  if (layers.size() > 1) {
+    throw std::runtime_error(
+        fmt::format("has several layers, of which --world-layer names that of a world: {}", names_of(layers)));
+  }
+  return layers.front();
+}
+
+glm::ivec2 size_of_window(const Imath::Box2i &window)
+{
+  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
+  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
+  return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+}
+
+/** \a read reads the pixels of \a data, rows from the bottom. Pixels outside of it are black. */
+template <typename Read>
+Picture picture_of_windows(const Imath::Box2i &display, const Imath::Box2i &data, const Read &read)
+{
+  const glm::ivec2 data_size_px = size_of_window(data);
+  Picture stored{data_size_px, {}};
+  const glm::ivec2 size_px = size_of_window(display);
+  stored.pixels.assign(std::size_t(data_size_px.x) * std::size_t(data_size_px.y), glm::vec4(1.0F));
+  read(stored);
+  if (display == data) {
+    return stored;
+  }
+  Picture picture{size_px, {}};
+  picture.pixels.assign(std::size_t(size_px.x) * std::size_t(size_px.y), glm::vec4(0.0F, 0.0F, 0.0F, 1.0F));
+  const int first = std::max(display.min.x, data.min.x);
+  const int end = std::min(display.max.x, data.max.x) + 1;
+  // OpenEXR counts rows from the top.
+  for (int y = std::max(display.min.y, data.min.y); first < end && y <= std::min(display.max.y, data.max.y); y++) {
+    const auto row_from = std::size_t(data.max.y - y) * std::size_t(data_size_px.x);
+    const auto row_to = std::size_t(display.max.y - y) * std::size_t(size_px.x);
+    std::copy_n(&stored.pixels[row_from + std::size_t(first - data.min.x)], end - first,
+                &picture.pixels[row_to + std::size_t(first - display.min.x)]);
+  }
+  return picture;
+}
+
+/** The address of pixel (0, 0) of a buffer of \a pixel_bytes a pixel whose last row is \a top, which may be outside. */
+char *origin_of(void *top, const Imath::Box2i &data, std::ptrdiff_t pixel_bytes, std::ptrdiff_t row_bytes)
+{
+  return reinterpret_cast<char *>(reinterpret_cast<std::uintptr_t>(top) - std::uintptr_t(pixel_bytes * data.min.x) +
+                                  std::uintptr_t(row_bytes * data.min.y));
+}
+
+Picture read_channels(Imf::MultiPartInputFile &file, const ExrLayer &layer)
+{
+  Imf::InputPart part(file, layer.part);
+  const Imf::Header &header = part.header();
+  for (const std::string &name : layer.channels) {
+    const Imf::Channel *channel = header.channels().findChannel(name);
+    if (channel->xSampling != 1 || channel->ySampling != 1) {
+      throw std::runtime_error(fmt::format("channel {} has fewer pixels than the picture", name));
+    }
+  }
+  const Imath::Box2i data = header.dataWindow();
+  return picture_of_windows(header.displayWindow(), data, [&](Picture &picture) {
+    if (!part.isComplete()) {
+      throw std::runtime_error("is cut off");
+    }
+    const auto pixel_bytes = std::ptrdiff_t(sizeof(glm::vec4));
+    const std::ptrdiff_t row_bytes = pixel_bytes * picture.size_px.x;
+    char *origin = origin_of(&picture.pixels[std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y - 1)], data,
+                             pixel_bytes, row_bytes);
+    const bool is_grey = layer.channels[0] == layer.channels[1];
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < (is_grey ? 1 : layer.channels.size()); i++) {
+      buffer.insert(layer.channels[i], Imf::Slice(Imf::FLOAT, origin + i * sizeof(float), std::size_t(pixel_bytes),
+                                                  std::size_t(-row_bytes)));
+    }
+    part.setFrameBuffer(buffer);
+    part.readPixels(data.min.y, data.max.y);
+    if (is_grey) {
+      for (glm::vec4 &pixel : picture.pixels) {
+        pixel = glm::vec4(glm::vec3(pixel.r), 1.0F);
+      }
+    }
+  });
+}
+
+/** Colours of luminance and chroma, which OpenEXR computes as halves. */
+Picture read_chroma(const fs::path &path, const ExrLayer &layer)
+{
+  Imf::RgbaInputFile file(path.c_str(), layer.name);
+  const Imath::Box2i data = file.dataWindow();
+  return picture_of_windows(file.displayWindow(), data, [&](Picture &picture) {
+    if (!file.isComplete()) {
+      throw std::runtime_error("is cut off");
+    }
+    const auto width = std::size_t(picture.size_px.x);
+    std::vector<Imf::Rgba> rows(picture.pixels.size());
+    const auto pixel_bytes = std::ptrdiff_t(sizeof(Imf::Rgba));
+    const std::ptrdiff_t row_bytes = pixel_bytes * picture.size_px.x;
+    char *origin = origin_of(&rows[rows.size() - width], data, pixel_bytes, row_bytes);
+    file.setFrameBuffer(reinterpret_cast<Imf::Rgba *>(origin), 1, std::size_t(-std::ptrdiff_t(width)));
+    file.readPixels(data.min.y, data.max.y);
+    std::ranges::transform(rows, picture.pixels.begin(),
+                           [](const Imf::Rgba &pixel) { return glm::vec4(pixel.r, pixel.g, pixel.b, 1.0F); });
+  });
+}
+
+}  // namespace
+
+std::optional<Picture> read_exr_picture(const fs::path &path, const std::string &layer_label)
+{
+  if (!Imf::isOpenExrFile(path.c_str())) {
+    return std::nullopt;
+  }
+  Imf::MultiPartInputFile file(path.c_str());
+  std::vector<ExrLayer> layers;
+  bool is_deep = false;
+  std::vector<std::string> channels;
+  for (int part = 0; part < file.parts(); part++) {
+    const Imf::Header &header = file.header(part);
+    if (header.hasType() && Imf::isDeepData(header.type())) {
+      is_deep = true;
+      continue;
+    }
+    const std::vector<ExrLayer> of_part = layers_of(header, part, file.parts() == 1);
+    layers.insert(layers.end(), of_part.begin(), of_part.end());
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+      channels.emplace_back(channel.name());
+    }
+  }
+  if (layers.empty()) {
+    constexpr std::size_t listed_max = 32;
+    channels.resize(std::min(channels.size(), listed_max));
+    throw std::runtime_error(
+        is_deep ? "has deep pixels, which are not read"
+                : fmt::format("has no channels R, G and B, and no channel Y; it has: {}", fmt::join(channels, ", ")));
+  }
+  const ExrLayer layer = chosen(layers, layer_label);
+  if (layer.has_chroma && file.parts() == 1) {
+    return read_chroma(path, layer);
+  }
+  return read_channels(file, layer);
+}
+
+}  // namespace gnomon::cli

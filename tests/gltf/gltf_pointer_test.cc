@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Pointers of KHR_animation_pointer to visibility, transforms of textures, and both factors of emission.
+#include "gltf/gltf_animated.hh"
+#include "gltf_export.hh"
+
+namespace gnomon::test {
+namespace {
+
+using scene::Scene;
+
+json pointer_to(const std::string &path)
+{
+  return {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", path}}}}}};
+}
+
+/** The scene, and the scene that is read from its file. */
+std::vector<Scene> scenes_of(const GltfBuilder &builder)
+{
+  std::vector<Scene> scenes;
+  scenes.push_back(import(builder));
+  const TemporaryFolder folder;
+  gltf::export_gltf(scenes[0], folder.path() / "again.glb");
+  scenes.push_back(gltf::import_gltf(folder.path() / "again.glb"));
+  return scenes;
+}
+
+void pose_first(Scene &scene, double seconds)
+{
+  ASSERT_EQ(scene.animations.size(), 1U) << all_warnings(scene);
+  const scene::Animation animation = scene.animations[0];
+  scene::pose(scene, animation, seconds);
+}
+
+TEST(GltfPointer, VisibilityIsPlayed)
+{
+  GltfBuilder builder = triangle_scene();
+  json &animation = builder.document["animations"][0];
+  const int input = builder.accessor<float>({0, 1}, Float32, "SCALAR");
+  const int output = builder.accessor(std::vector<std::uint8_t>{1, 0}, Uint8, "SCALAR");
+  animation["samplers"] = {{{"input", input}, {"output", output}, {"interpolation", "STEP"}}};
+  animation["channels"] = {{{"sampler", 0}, {"target", pointer_to("/nodes/0/extensions/KHR_node_visibility/visible")}}};
+  for (Scene &scene : scenes_of(builder)) {
+    pose_first(scene, 0.5);
+    EXPECT_EQ(scene.objects().size(), 1U);
+    pose_first(scene, 1.0);
+    EXPECT_TRUE(scene.objects().empty());
+  }
+}
+
+TEST(GltfPointer, TransformsOfTexturesArePlayed)
+{
+  const std::vector<std::pair<std::string, scene::TextureSlot scene::Material::*>> slots{
+      {"pbrMetallicRoughness/baseColorTexture", &scene::Material::base_color_texture},
+      {"emissiveTexture", &scene::Material::emissive_texture},
+      {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", &scene::Material::coat_normal_texture}};
+  for (const auto &[path, slot] : slots) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["materials"] = {{{"name", "paint"}}};
+    builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+    const std::string transform = "/materials/0/" + path + "/extensions/KHR_texture_transform/";
+    add_channel(builder, pointer_to(transform + "offset"), {0, 1}, {0, 0, 0.5F, 1}, "VEC2");
+    add_channel(builder, pointer_to(transform + "rotation"), {0, 1}, {0, 2}, "SCALAR");
+    add_channel(builder, pointer_to(transform + "scale"), {0, 1}, {1, 1, 3, 5}, "VEC2");
+    for (Scene &scene : scenes_of(builder)) {
+      pose_first(scene, 0.5);
+      const scene::TextureSlot &posed = nth(scene.materials(), 0).*slot;
+      EXPECT_EQ(posed.offset, glm::vec2(0.25F, 0.5F)) << path;
+      EXPECT_EQ(posed.rotation, 1.0F) << path;
+      EXPECT_EQ(posed.scale, glm::vec2(2.0F, 3.0F)) << path;
+    }
+  }
+}
+
+TEST(GltfPointer, EmissionIsTheProductOfBothFactorsInEitherOrder)
+{
+  const std::string factor = "/materials/0/emissiveFactor";
+  const std::string strength = "/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength";
+  for (const bool is_factor_first : {true, false}) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["materials"] = {
+        {{"name", "paint"},
+         {"emissiveFactor", {0, 0, 0}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 0}}}}}}};
+    builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+    for (const bool is_factor : {is_factor_first, !is_factor_first}) {
+      if (is_factor) {
+        add_channel(builder, pointer_to(factor), {0, 1}, {0, 0, 0, 1, 0.5F, 0.25F}, "VEC3");
+      }
+      else {
+        add_channel(builder, pointer_to(strength), {0, 1}, {0, 5}, "SCALAR");
+      }
+    }
+    for (Scene &scene : scenes_of(builder)) {
+      pose_first(scene, 1.0);
+      EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(5.0F, 2.5F, 1.25F));
+      pose_first(scene, 0.5);
+      EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(1.25F, 0.625F, 0.3125F));
+    }
+  }
+}
+
+// ---- Several animations ----
+
+/** A file of one animation for each of the targets, whose values go from 0 to 1 in the first second. */
+Scene with_animations_of(const std::vector<json> &targets)
+{
+  GltfBuilder builder = triangle_scene();
+  builder.node({{"name", "other"}});
+  builder.document["materials"] = {{{"name", "paint"}, {"emissiveFactor", {1, 1, 1}}}};
+  builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+  json animations;
+  for (const json &target : targets) {
+    const bool is_strength = target.dump().find("emissiveStrength") != std::string::npos;
+    builder.document["animations"] = json::array({json::object()});
+    add_channel(builder, target, {0, 1},
+                is_strength                    ? std::vector<float>{0, 4}
+                : target["path"] == "rotation" ? std::vector<float>{0, 0, 0, 1, 0, 0, 1, 0}
+                                               : std::vector<float>{0, 0, 0, 1, 1, 1},
+                is_strength                    ? "SCALAR"
+                : target["path"] == "rotation" ? "VEC4"
+                                               : "VEC3");
+    animations.push_back(builder.document["animations"][0]);
+  }
+  builder.document["animations"] = animations;
+  return import(builder);
+}
+
+json node_path(int node, const std::string &path)
+{
+  return {{"node", node}, {"path", path}};
+}
+
+TEST(GltfAnimations, OfSeveralThingsArePlayedAsOne)
+{
+  Scene scene =
+      with_animations_of({node_path(0, "translation"), node_path(0, "rotation"), node_path(1, "translation")});
+  ASSERT_EQ(scene.animations.size(), 3U) << all_warnings(scene);
+  scene::Animation all;
+  for (const scene::Animation &one : std::vector(scene.animations)) {
+    EXPECT_TRUE(scene::join(all, one));
+  }
+  EXPECT_EQ(all.nodes.size(), 2U);
+  scene::pose(scene, all, 1.0);
+  const glm::dmat4 &first = scene.nodes()[all.nodes[0].node].parent_from_node;
+  EXPECT_EQ(glm::dvec3(first[3]), glm::dvec3(1.0));
+  EXPECT_LT(glm::length(glm::dvec3(first[0]) - glm::dvec3(-1, 0, 0)), 1e-6) << "turned, too";
+  EXPECT_EQ(glm::dvec3(scene.nodes()[all.nodes[1].node].parent_from_node[3]), glm::dvec3(1.0));
+}
+
+TEST(GltfAnimations, OfTheSameThingAreNotJoined)
+{
+  const std::vector<json> targets{node_path(0, "translation"), node_path(0, "scale"), node_path(1, "translation"),
+                                  pointer_to("/materials/0/emissiveFactor")};
+  for (const json &target : targets) {
+    const Scene scene = with_animations_of({target, target});
+    ASSERT_EQ(scene.animations.size(), 2U) << all_warnings(scene);
+    scene::Animation all = scene.animations[0];
+    EXPECT_FALSE(scene::join(all, scene.animations[1])) << target;
+    EXPECT_EQ(all.nodes.size(), scene.animations[0].nodes.size());
+    EXPECT_EQ(all.values.size(), scene.animations[0].values.size());
+  }
+}
+
+TEST(GltfAnimations, OfBothFactorsOfEmissionAreTheirProduct)
+{
+  const json factor = pointer_to("/materials/0/emissiveFactor");
+  const json strength = pointer_to("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength");
+  for (const std::vector<json> &targets : {std::vector{factor, strength}, {strength, factor}}) {
+    Scene scene = with_animations_of(targets);
+    ASSERT_EQ(scene.animations.size(), 2U) << all_warnings(scene);
+    scene::Animation all = scene.animations[0];
+    EXPECT_TRUE(scene::join(all, scene.animations[1]));
+    EXPECT_EQ(all.values.size(), 1U);
+    scene::pose(scene, all, 0.5);
+    EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(1.0F));
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::test
