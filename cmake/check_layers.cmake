@@ -35,7 +35,7 @@ set(source/view source/measure source/reference source/engines/eevee source/engi
   source/gltf source/output source/scene shaders)
 set(source/description_tool source/view source/engines/eevee source/render_scene source/gltf source/scene)
 set(source/python source/measure source/reference source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw
-  source/gpu source/gltf source/image source/scene shaders)
+  source/shader_check source/gpu source/gltf source/image source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
 set(LAYERS source/trace source/memory source/output source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
@@ -98,11 +98,20 @@ foreach(FILE ${FILES})
     set(GL_HEADER "^(GL[0-9]*|GLES[0-9]*|EGL|KHR|GLFW|epoxy)/")
   endif()
 
+  if(FILE MATCHES "^(source/gpu/vulkan|examples|tests)/")
+    set(VULKAN_HEADER "^$")
+  else()
+    set(VULKAN_HEADER "^(vulkan/vulkan.*\\.h|volk\\.h)$")
+  endif()
+
   file(STRINGS ${FOLDER}/${FILE} INCLUDES REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
   foreach(INCLUDE ${INCLUDES})
     string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*).*" "\\1" NAME "${INCLUDE}")
     if(NAME MATCHES "${GL_HEADER}")
       violation(${FILE} "${INCLUDE}" "only source/gpu/gl/ sees GL headers")
+    endif()
+    if(NAME MATCHES "${VULKAN_HEADER}")
+      violation(${FILE} "${INCLUDE}" "only source/gpu/vulkan/ sees Vulkan headers")
     endif()
     if(OWN_LAYER)
       resolve(${FILE} ${NAME} PATH)

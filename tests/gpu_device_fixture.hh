@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gpu_device.hh"
+#include "shader_check_spirv.hh"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +10,42 @@
 
 namespace gnomon::test {
 
+/** The backend of devices of tests: the environment variable GNOMON_TEST_BACKEND, `gl` (the default) or `vulkan`. */
+inline std::string testing_backend()
+{
+  const char *backend = std::getenv("GNOMON_TEST_BACKEND");
+  return backend && *backend ? backend : "gl";
+}
+
+/** \throws Error. Messages of Vulkan's validation layers are errors, or failures where they come from a destructor. */
+inline std::unique_ptr<gpu::Device> create_testing_device(const std::string &backend)
+{
+  if (backend == "gl") {
+    return gpu::create_gl_device({.is_debug = true});
+  }
+  if (backend != "vulkan") {
+    throw gpu::Error("GNOMON_TEST_BACKEND is '{}', not 'gl' or 'vulkan'", backend);
+  }
+  const auto sink = [](std::string_view message) {
+    if (message.starts_with("Validation")) {
+      ADD_FAILURE() << message;
+    }
+    else {
+      fmt::print(stderr, "gnomon: {}\n", message);
+    }
+  };
+  return gpu::create_vulkan_device({.compile_spirv = shader_check::compile_spirv, .is_debug = true, .sink = sink});
+}
+
 /**
- * A headless device that throws driver errors, also in release builds. If there is no driver, the test is skipped with
- * the reason, or fails if CI is set, and the function returns nullptr; the test (or SetUp) must then return.
+ * A headless device of \a backend that throws driver errors, also in release builds. If there is no driver, the test is
+ * skipped with the reason, or fails if CI is set, and the function returns nullptr; the test (or SetUp) must then
+ * return.
  */
-inline std::unique_ptr<gpu::Device> testing_gl_device()
+inline std::unique_ptr<gpu::Device> testing_device(const std::string &backend)
 {
   try {
-    return gpu::create_gl_device({.is_debug = true});
+    return create_testing_device(backend);
   }
   catch (const gpu::Error &error) {
     const char *ci = std::getenv("CI");
@@ -30,16 +59,22 @@ inline std::unique_ptr<gpu::Device> testing_gl_device()
   }
 }
 
+/** For tests of OpenGL, and of programs that use it. */
+inline std::unique_ptr<gpu::Device> testing_gl_device()
+{
+  return testing_device("gl");
+}
+
 /** Base of test cases that need a device. Each test has a new one. */
 class GpuDeviceTest : public testing::Test {
  protected:
   void SetUp() override
   {
-    device = testing_gl_device();
+    device = testing_device(testing_backend());
     if (device) {
       return;
     }
-    // Repeats the result of testing_gl_device, so that gtest does not run the body.
+    // Repeats the result of testing_device, so that gtest does not run the body.
     if (HasFailure()) {
       FAIL();
     }
@@ -47,6 +82,18 @@ class GpuDeviceTest : public testing::Test {
   }
 
   std::unique_ptr<gpu::Device> device;
+};
+
+/** Base of test cases that need a device of OpenGL. Skipped if another backend is tested. */
+class GlDeviceTest : public GpuDeviceTest {
+ protected:
+  void SetUp() override
+  {
+    if (testing_backend() != "gl") {
+      GTEST_SKIP() << "of OpenGL alone";
+    }
+    GpuDeviceTest::SetUp();
+  }
 };
 
 }  // namespace gnomon::test

@@ -57,5 +57,9 @@ vec3 to_normal_ws(vec3 normal_os)
 
 vec4 vertex_position_ws()
 {
+#ifdef VULKAN
+  // OpenGL's default, which Vulkan lacks.
+  gl_PointSize = 1.0;
+#endif
   return world_from_object() * vec4(position, 1.0);
 }

@@ -14,11 +14,11 @@ layout(location = 8) out vec4 surface_specular_uvs;
 #  include "eevee/eevee_layer_block_lib.glsl"
 
 layout(location = 9) out vec4 surface_coat_uvs;
-layout(location = 10) out vec4 surface_sheen_uvs;
+layout(location = 17) out vec4 surface_sheen_uvs;
 layout(location = 16) out vec4 surface_anisotropy_coat_normal_uvs;
 layout(location = 19) flat out float surface_coat_normal_scale;
 #  ifdef USE_TRANSMISSION
-layout(location = 11) out vec4 surface_transmission_uvs;
+layout(location = 18) out vec4 surface_transmission_uvs;
 /** Of directions. */
 layout(location = 12) flat out mat3 surface_object_from_world;
 /** Factor of roughness; whether a texture is multiplied with it; index of refraction. */

@@ -31,10 +31,10 @@ layout(location = 7) in vec4 caster_occlusion_emissive_uvs[];
 layout(location = 7) out vec4 surface_occlusion_emissive_uvs;
 layout(location = 8) in vec4 caster_specular_uvs[];
 layout(location = 8) out vec4 surface_specular_uvs;
-layout(location = 17) in vec4 caster_mesh_uvs[];
-layout(location = 17) out vec4 surface_mesh_uvs;
-layout(location = 18) in vec3 caster_position_os[];
-layout(location = 18) out vec3 surface_position_os;
+layout(location = 10) in vec4 caster_mesh_uvs[];
+layout(location = 10) out vec4 surface_mesh_uvs;
+layout(location = 11) in vec3 caster_position_os[];
+layout(location = 11) out vec3 surface_position_os;
 #  endif
 #endif
 

@@ -10,8 +10,8 @@ layout(std140, binding = SURFACE_FUNCTION_BLOCK_SLOT) uniform surface_function_b
 };
 
 /** Both sets of the mesh, without the transforms of textures. */
-layout(location = 17) in vec4 surface_mesh_uvs;
-layout(location = 18) in vec3 surface_position_os;
+layout(location = 10) in vec4 surface_mesh_uvs;
+layout(location = 11) in vec3 surface_position_os;
 #ifndef USE_LIGHT
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;

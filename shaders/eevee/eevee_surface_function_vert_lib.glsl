@@ -3,8 +3,8 @@
 #include "eevee/eevee_full_material_vert_lib.glsl"
 #include "eevee/eevee_surface_vert_lib.glsl"
 
-layout(location = 17) out vec4 surface_mesh_uvs;
-layout(location = 18) out vec3 surface_position_os;
+layout(location = 10) out vec4 surface_mesh_uvs;
+layout(location = 11) out vec3 surface_position_os;
 
 /** Those that no other library writes. */
 void write_function_varyings()

@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_bench.hh"
+#include "cli_device.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -13,12 +14,6 @@
 #include <memory>
 
 namespace gnomon::cli {
-
-std::unique_ptr<gpu::Device> bench_device(const BenchOptions &options)
-{
-  return options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
-                                 : gpu::create_null_device();
-}
 
 nlohmann::json to_json(const measure::Spread &spread)
 {
@@ -81,9 +76,9 @@ void bench_shadows(const BenchOptions &options)
   };
   const std::unique_ptr<gpu::Device> null_device = gpu::create_null_device();
   measure(*null_device, "cpu", measure::Clock::ThreadCpu, 1e-6, "Record and submit, CPU time");
-  if (options.backend == "gl") {
-    const std::unique_ptr<gpu::Device> gl_device = bench_device(options);
-    measure(*gl_device, "wall", measure::Clock::Wall, 1e-3, "Until the device is done, wall time");
+  if (options.backend != "null") {
+    const std::unique_ptr<gpu::Device> device = create_device(options.backend);
+    measure(*device, "wall", measure::Clock::Wall, 1e-3, "Until the device is done, wall time");
   }
   write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
                             {"bench", "shadows"},
@@ -94,7 +89,7 @@ void bench_shadows(const BenchOptions &options)
 
 void bench_left_out(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device = bench_device(options);
+  const std::unique_ptr<gpu::Device> device = create_device(options.backend);
   const std::vector<measure::LeftOutCost> costs = measure::measure_left_out(*device, options.rounds);
   fmt::print(
       "A full scene and ten that lack one thing each, 640x360, one sample: a first frame with all that it makes,\n"
@@ -134,7 +129,7 @@ void bench_left_out(const BenchOptions &options)
 
 void bench_lamps(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device = bench_device(options);
+  const std::unique_ptr<gpu::Device> device = create_device(options.backend);
   const std::vector<measure::LampsCost> costs = measure::measure_lamps(*device, options.rounds);
   fmt::print(
       "Point lamps with a range of {} m and hard shadows in a square hall, 320x180, one sample: warm frames in which\n"
@@ -260,12 +255,6 @@ void check_files(const BenchOptions &options)
   roles.add_output(options.json, "--json");
 }
 
-/** \a text: description of each backend. */
-void add_backend(CLI::App &bench, BenchOptions &options, const char *text)
-{
-  bench.add_option("--backend", options.backend, text)->capture_default_str()->check(CLI::IsMember({"gl", "null"}));
-}
-
 }  // namespace
 
 void add_bench(CLI::App &app, Status &status)
@@ -274,7 +263,7 @@ void add_bench(CLI::App &app, Status &status)
   command->require_subcommand(1);
   auto o = std::make_shared<BenchOptions>();
   CLI::App *shadows = command->add_subcommand("shadows", "The methods of drawing a lamp's layers, side by side");
-  add_backend(*shadows, *o, "gl: on the null backend and on the driver; null: without a driver");
+  add_backend_option(*shadows, o->backend, "measure only without a driver");
   shadows->callback([o] { bench_shadows(*o); });
   CLI::App *record = command->add_subcommand("record", "What a draw with its own matrix costs, without a driver");
   record->callback([o] { bench_record(*o); });
@@ -286,21 +275,21 @@ void add_bench(CLI::App &app, Status &status)
   sync->callback([o] { bench_sync(*o); });
   CLI::App *left_out =
       command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
-  add_backend(*left_out, *o, "gl, or null: without a driver");
+  add_backend_option(*left_out, o->backend, "without a driver");
   left_out->callback([o] { bench_left_out(*o); });
   CLI::App *lamps = command->add_subcommand("lamps", "What few and many lamps cost in a frame");
-  add_backend(*lamps, *o, "gl, or null: without a driver");
+  add_backend_option(*lamps, o->backend, "without a driver");
   lamps->callback([o] { bench_lamps(*o); });
   CLI::App *growth =
       command->add_subcommand("growth", "How times grow with objects, casters, imported nodes, pixels and samples");
-  add_backend(*growth, *o, "gl, or null: without pixels and samples");
+  add_backend_option(*growth, o->backend, "without pixels and samples");
   for (CLI::App *bench : {cull, imports, growth}) {
     bench->add_option("--count-max", o->count_max, "Leave out larger counts")->check(CLI::Range(1000, 1 << 30));
   }
   growth->callback([o] { bench_growth(*o); });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
-  add_backend(*start, *o, "gl, or null: without a driver and a picture");
+  add_backend_option(*start, o->backend, "without a driver and a picture");
   add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
   for (CLI::App *bench : {shadows, record, cull, imports, sync, left_out, lamps, growth, start}) {
@@ -317,14 +306,14 @@ void add_bench(CLI::App &app, Status &status)
   frames->add_option("--budget", o->budget_ms, "Time of a draw within a budget, milliseconds")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 10000.0));
-  add_backend(*frames, *o, "gl, or null: without a driver");
+  add_backend_option(*frames, o->backend, "without a driver");
   frames->add_option("--json", o->json, "Write the figures, in seconds");
   add_world_options(*frames, o->world);
   frames->callback([o] { bench_frames(*o); });
   CLI::App *memory = command->add_subcommand("memory", "Device memory of a picture, beside that without shadows");
   memory->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
   memory->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
-  add_backend(*memory, *o, "gl, or null: without a driver, and without fits to the picture's depths");
+  add_backend_option(*memory, o->backend, "without a driver, and without fits to the picture's depths");
   memory->add_option("--json", o->json, "Write the figures, in bytes");
   add_world_options(*memory, o->world);
   memory->callback([o] { bench_memory(*o); });

@@ -23,7 +23,7 @@ namespace gnomon::cli {
 struct BenchOptions {
   std::string scene;
   std::vector<std::string> scenes;
-  std::string backend = "gl";
+  std::string backend = "auto";
   int rounds = 21;
   int points = 256;
   int count_max = 1 << 30;
@@ -34,9 +34,6 @@ struct BenchOptions {
   std::string json;
   WorldOptions world;
 };
-
-/** A device of the kind that BenchOptions::backend names. \throws std::runtime_error if there is none */
-[[nodiscard]] std::unique_ptr<gpu::Device> bench_device(const BenchOptions &options);
 
 [[nodiscard]] nlohmann::json to_json(const measure::Spread &spread);
 /** Median and quartiles, in units of \a unit seconds. */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli_bench.hh"
+#include "cli_device.hh"
 
 #include "measure_frames.hh"
 
@@ -66,7 +67,7 @@ nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, con
 
 void bench_frames(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device = bench_device(options);
+  const std::unique_ptr<gpu::Device> device = create_device(options.backend);
   fmt::print(
       "Frames of a host at 640x360, milliseconds, of {} frames each, until the device is done. One lamp is moved: a\n"
       "whole sample. Budget: {} ms. Complete and still: {} further calls without a target. {}\n",

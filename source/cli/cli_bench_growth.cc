@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli_bench.hh"
+#include "cli_device.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +11,7 @@ namespace gnomon::cli {
 
 void bench_growth(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device = options.backend == "gl" ? bench_device(options) : nullptr;
+  const std::unique_ptr<gpu::Device> device = options.backend == "null" ? nullptr : create_device(options.backend);
   fmt::print(
       "Times of growing counts: milliseconds, median [quartiles] of {} rounds. Objects and casters: CPU time without "
       "a\n"

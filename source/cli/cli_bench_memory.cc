@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli_bench.hh"
+#include "cli_device.hh"
 #include "cli_render_options.hh"
 
 #include "eevee_scene_renderer.hh"
@@ -66,7 +67,7 @@ nlohmann::json print_memory(gpu::Device &device, const BenchOptions &options, co
 
 void bench_memory(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device = bench_device(options);
+  const std::unique_ptr<gpu::Device> device = create_device(options.backend);
   fmt::print(
       "Content on the device after the first sample of a picture of {} pixels, with the settings of `gnomon render`,\n"
       "and its ratio to the same picture without shadows. {}\n",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_device.hh"
 #include "cli_frames.hh"
 #include "cli_origin.hh"
 #include "cli_render.hh"
@@ -74,6 +75,9 @@ Status plan(const PlanOptions &options, const CLI::App &command)
   if (options.render.scenes.empty()) {
     throw UsageError("plan: a scene is required");
   }
+  if (!options.render.has_picture()) {
+    throw UsageError("plan: the parts draw pictures, and --backend null draws none");
+  }
   output::Roles roles;
   for (const std::string &scene : options.render.scenes) {
     roles.add_input(scene, "the scene");
@@ -83,9 +87,7 @@ Status plan(const PlanOptions &options, const CLI::App &command)
       .program = program_name(), .arguments = arguments_of(command), .frame_step = options.render.frames.step};
   plan.folder = fs::relative(fs::current_path(), fs::absolute(options.plan).parent_path()).string();
   const std::unique_ptr<gpu::Device> device =
-      options.seconds_per_frame > 0.0
-          ? nullptr
-          : gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+      options.seconds_per_frame > 0.0 ? nullptr : create_device(options.render.backend);
   for (const std::string &path : options.render.scenes) {
     RenderOptions render = options.render;
     render.scene = path;

@@ -3,6 +3,7 @@
 
 #include "cli.hh"
 #include "cli_aov.hh"
+#include "cli_device.hh"
 #include "cli_explain.hh"
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
@@ -136,15 +137,6 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
   for (const std::string &text : texts) {
     print_message("gnomon: {}: {}\n", kind, text);
   }
-}
-
-std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
-{
-  const trace::Span span("device");
-  if (!options.has_picture()) {
-    return gpu::create_null_device();
-  }
-  return gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
 }
 
 struct ImportedScene {
@@ -400,7 +392,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
   std::future<ImportedScene> import = start_import(scenes.front(), stops);
   std::unique_ptr<gpu::Device> device;
   try {
-    device = create_device(options);
+    device = create_device(options.backend);
     result.device = device->description();
     result.device_seconds = seconds_since(start);
   }

@@ -3,6 +3,7 @@
 
 #include "cli.hh"
 #include "cli_aov.hh"
+#include "cli_device.hh"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <string>
 
 namespace gnomon::cli {
 
@@ -163,13 +165,13 @@ void RenderOptions::check() const
   if (!aov.empty() && is_png()) {
     throw UsageError("--aov writes layers of an EXR file; a PNG has none");
   }
-  if (choice.is_asked() && backend != "gl") {
-    throw UsageError("--max-error and --max-time measure a rendered picture and need --backend gl");
+  if (choice.is_asked() && !has_picture()) {
+    throw UsageError("--max-error and --max-time measure a rendered picture, and --backend null has none");
   }
   if (!choice.report_folder.empty() && !choice.is_asked()) {
     throw UsageError("--report needs --max-error or --max-time");
   }
-  if (output.empty() && backend == "gl") {
+  if (output.empty() && has_picture()) {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
   if (is_part() && (is_png() || !debug.empty() || !aov.empty() || (frames.is_resumed && plan_id.empty()))) {
@@ -362,9 +364,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->check(CLI::Range(1, 100000));
   command.add_flag("--redraw-shadows", options.redraws_shadows,
                    "With --repeat: draw the shadows of each picture anew, as after an edit of the scene");
-  command.add_option("--backend", options.backend, "gl, or null: record without a driver and draw nothing")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend_option(command, options.backend, "record without a driver and draw nothing");
 
   command.option_defaults()->group("Farms");
   command.add_option("--part", options.part,

@@ -45,7 +45,8 @@ struct RenderOptions {
   DebugView debug_view;
   std::string aov;
   Changes<render_scene::Display> display_changes;
-  std::string backend = "gl";
+  /** Of gpu::backend_names. */
+  std::string backend = "auto";
   bool is_explained = false;
   std::string json;
   std::string trace;
@@ -75,7 +76,7 @@ struct RenderOptions {
   /** Whether a rendered picture is written. The null backend has none. */
   [[nodiscard]] bool has_picture() const
   {
-    return backend == "gl";
+    return backend != "null";
   }
   [[nodiscard]] bool is_shadow_shown() const
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_device.hh"
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
@@ -41,6 +42,7 @@ struct ReportOptions {
   /** has_multiscatter is used. */
   Changes<eevee::Settings> changes;
   fs::path only_below;
+  std::string backend = "auto";
 };
 
 /** Shows a progress bar on a terminal; silent in a pipe. */
@@ -409,8 +411,7 @@ Status report(const ReportOptions &options)
   if (options.reference_samples % 2 != 0) {
     throw UsageError(fmt::format("--reference-samples {} is not even", options.reference_samples));
   }
-  const std::unique_ptr<gpu::Device> device =
-      gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+  const std::unique_ptr<gpu::Device> device = create_device(options.backend);
   const std::size_t non_finite = Run(*device, options).measure_all();
   if (non_finite > 0) {
     print_message("gnomon: {} values of pictures and shadows are not finite\n", non_finite);
@@ -447,6 +448,7 @@ void add_report(CLI::App &app, Status &status)
       ->check(CLI::Range(2, 65536));
   add_world_options(*command, o->world);
   add_only_below_option(*command, o->only_below);
+  add_backend_option(*command, o->backend);
   SettingOptions<eevee::Settings> settings;
   settings.take<eevee::Settings>(
       [](auto &whole) -> auto & { return whole; }, [](std::string_view option) { return option == "specular"; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_device.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
 
@@ -30,6 +31,7 @@ namespace {
 struct StabilityOptions {
   std::string folder;
   std::string group;
+  std::string backend = "auto";
 };
 
 struct CaseResult {
@@ -53,16 +55,17 @@ bool is_rendered(const std::string &group)
   return group.rfind(verify::image_group_prefix, 0) == 0;
 }
 
-/** The cases of \a group, or all if it is empty, sorted by group. Creates \a device if a case needs one. */
-std::vector<verify::StabilityCase> chosen_cases(const std::string &group, std::unique_ptr<gpu::Device> &device)
+/** The cases of the group that is asked for, or all, sorted by group. Creates \a device if a case needs one. */
+std::vector<verify::StabilityCase> chosen_cases(const StabilityOptions &options, std::unique_ptr<gpu::Device> &device)
 {
+  const std::string &group = options.group;
   std::vector<verify::StabilityCase> cases = verify::function_stability_cases();
   const auto append = [&cases](std::vector<verify::StabilityCase> more) {
     cases.insert(cases.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   };
   append(verify::input_stability_cases());
   if (group.empty() || is_rendered(group)) {
-    device = gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+    device = create_device(options.backend);
     append(verify::image_stability_cases(*device));
   }
   const std::vector<std::string> groups = groups_of(cases);
@@ -346,7 +349,7 @@ std::string to_html(const std::vector<CaseResult> &results, const Origin &where,
 Status stability(const StabilityOptions &options)
 {
   std::unique_ptr<gpu::Device> device;
-  std::vector<verify::StabilityCase> cases = chosen_cases(options.group, device);
+  std::vector<verify::StabilityCase> cases = chosen_cases(options, device);
   const std::string driver = device ? device->description() : "no device";
   fs::create_directories(options.folder);
   const fs::path folder(options.folder);
@@ -376,6 +379,7 @@ void add_stability(CLI::App &app, Status &status)
   CLI::App *command = app.add_subcommand("stability", "Stiff and extreme cases: error, bound and finiteness");
   command->add_option("-o,--output", o->folder, "Folder for stability.csv, stability.json and index.html")->required();
   command->add_option("--group", o->group, "Run only the cases of this group; an unknown name lists the groups");
+  add_backend_option(*command, o->backend);
   command->callback([o, &status] { status = stability(*o); });
 }
 

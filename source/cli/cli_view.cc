@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #ifdef GNOMON_VIEW
+#include "cli_device.hh"
 #include "cli_picture.hh"
 #include "cli_world.hh"
 
@@ -22,7 +23,12 @@ void add_view(CLI::App &app)
   command->add_option("--shaders", o->shaders,
                       "Folder with the engine's shaders, which are compiled again when a file changes");
   add_only_below_option(*command, o->only_below);
-  command->callback([o] {
+  const auto backend = std::make_shared<std::string>("auto");
+  add_backend_option(*command, *backend);
+  command->callback([o, backend] {
+    if (*backend == "vulkan") {
+      throw UsageError("view: the window is drawn with OpenGL, and --backend vulkan draws no windows");
+    }
     o->writers.png = [](const auto &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba) {
       write_png(path, size_px, rgba, {});
     };

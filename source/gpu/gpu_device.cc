@@ -40,14 +40,19 @@ void Device::free_live_resources()
   }
 }
 
-void Device::message(std::string_view text) const
+void send_message(const MessageSink &sink, std::string_view text)
 {
-  if (sink_) {
-    sink_(text);
+  if (sink) {
+    sink(text);
   }
   else {
     fmt::print(stderr, "gnomon: {}\n", text);
   }
+}
+
+void Device::message(std::string_view text) const
+{
+  send_message(sink_, text);
 }
 
 void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)

@@ -34,8 +34,11 @@ class TimerQuery : public Resource {
 /** Number of passes by name. */
 using PassCounts = std::map<std::string, std::uint64_t, std::less<>>;
 
-/** Receives warnings from the driver and from the device, one line each. It must not throw. */
+/** Receives warnings from the driver and from the device, one line each. It must not throw. Empty: they are printed. */
 using MessageSink = std::function<void(std::string_view message)>;
+
+/** Gives \a text to \a sink, or prints it to stderr if the sink is empty. */
+void send_message(const MessageSink &sink, std::string_view text);
 
 /**
  * The interface to a graphics API.
@@ -481,6 +484,28 @@ struct GlDeviceDesc {
  * current context; or if the context has an older version.
  */
 [[nodiscard]] std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc = {});
+
+struct VulkanDeviceDesc {
+  /** Required. Compiles the text of shaders. */
+  SpirvCompiler compile_spirv{};
+  /**
+   * Use the validation layers, with checks of synchronisation, and throw their messages as Error. They take several
+   * times the time of the driver on the CPU.
+   */
+  bool is_debug = false;
+  MessageSink sink{};
+  /** As GlDeviceDesc::shader_cache_folder. */
+  std::filesystem::path shader_cache_folder{};
+};
+
+/**
+ * Create a device that uses Vulkan 1.3, on its own instance and VkDevice. It has no batches, textures and framebuffers
+ * of the host.
+ *
+ * \throws Error if this build has no Vulkan, if there is no Vulkan driver, or if no physical device has the features
+ * that are needed, naming each device and what it lacks
+ */
+[[nodiscard]] std::unique_ptr<Device> create_vulkan_device(const VulkanDeviceDesc &desc);
 
 /**
  * The null backend calls this function on the device's thread before each operation, with the operation's name:

@@ -273,6 +273,10 @@ static void check_limits(std::string_view name, const ShaderInterface &interface
     check(BindingKind::UniformBlock, most.uniform_block_max, "uniform blocks");
     check(BindingKind::Texture, most.sampler_max, "samplers");
   }
+  if (interface.push_constant_size_bytes > limits.push_constant_bytes_max) {
+    throw Error("shader '{}': {} bytes of push constants, but this device supports {}", name,
+                interface.push_constant_size_bytes, limits.push_constant_bytes_max);
+  }
   if (interface.varying_locations > limits.varying_location_max) {
     throw Error("shader '{}': {} locations of values that a stage passes to the next, but this device supports {}",
                 name, interface.varying_locations, limits.varying_location_max);
@@ -285,6 +289,9 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
   std::vector<ShaderSource> stages = preprocess(desc, files);
   std::vector<ShaderSource> stand_in_stages = stand_in ? preprocess(desc, stand_in) : std::vector<ShaderSource>();
   ShaderInterface interface = reflection(desc.name, stages);
+  if (!desc.geometry_path.empty() && !limits_.has_geometry_shader) {
+    throw Error("shader '{}': this device has no geometry shaders", desc.name);
+  }
   check_limits(desc.name, interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
   Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0, [&](ResourceId id) {

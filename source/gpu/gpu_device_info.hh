@@ -21,6 +21,8 @@ struct Limits {
   int buffer_texels_max = 65536;
   std::size_t uniform_block_bytes_max = 65536;
   std::size_t storage_block_bytes_max = std::size_t(1) << 27U;
+  /** Of ShaderInterface::push_constant_size_bytes. Vulkan guarantees 128. */
+  std::size_t push_constant_bytes_max = 65536;
   int color_attachment_max = 8;
   /** Largest SamplerDesc::anisotropy; 1 where the device has none. */
   int anisotropy_max = 16;
@@ -41,8 +43,10 @@ struct Limits {
   std::array<Stage, 3> stages{};
   /** Maximum of ShaderInterface::varying_locations. OpenGL guarantees 16, and common devices have 31 or 32. */
   int varying_location_max = 31;
-  /** Whether vertex shaders may write `gl_Layer` (GL_ARB_shader_viewport_layer_array). */
+  /** Whether vertex shaders may write `gl_Layer` (GL_ARB_shader_viewport_layer_array; Vulkan's shaderOutputLayer). */
   bool has_vertex_layer = true;
+  /** Whether programs may have a geometry stage. OpenGL has it. */
+  bool has_geometry_shader = true;
 };
 
 /** Work that a device has done since it was created. */

@@ -181,4 +181,17 @@ struct SourceError : Error {
  */
 using ShaderReflection = std::function<ShaderInterface(std::string_view name, const std::vector<ShaderSource> &stages)>;
 
+/** One stage of a program as SPIR-V for Vulkan. */
+struct SpirvStage {
+  ShaderStage stage = ShaderStage::Vertex;
+  std::vector<std::uint32_t> words{};
+};
+
+/**
+ * Compiles the \a stages of the program \a name for Vulkan, or throws Error that names file and line. A device of
+ * Vulkan calls it on its thread. Use shader_check::compile_spirv from the library gnomon::shader_check.
+ */
+using SpirvCompiler =
+    std::function<std::vector<SpirvStage>(std::string_view name, const std::vector<ShaderSource> &stages)>;
+
 }  // namespace gnomon::gpu

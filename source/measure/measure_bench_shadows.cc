@@ -180,7 +180,10 @@ std::vector<LayerPassCost> measure_layer_passes(gpu::Device &device, int caster_
   std::vector<std::unique_ptr<LampBench>> benches;
   std::vector<LayerPassCost> rows;
   for (const LayerPassVariant &variant : variants) {
-    if (variant.layer_pass != eevee::LayerPass::Layered || device.limits().has_vertex_layer) {
+    const bool is_there = variant.layer_pass == eevee::LayerPass::Layered    ? device.limits().has_vertex_layer
+                          : variant.layer_pass == eevee::LayerPass::Geometry ? device.limits().has_geometry_shader
+                                                                             : true;
+    if (is_there) {
       benches.push_back(std::make_unique<LampBench>(device, batches, caster_count, variant));
       rows.push_back({&variant, {}, {}});
     }

@@ -306,7 +306,9 @@ void define_renderer(py::module_ &module)
                                               "A GPU, or a software rasteriser, without a window. It and its renderers "
                                               "are used on one thread: the one that made "
                                               "it.")
-      .def(py::init<>(), "Raises DeviceError, which names each kind of context that was tried and why it failed.")
+      .def(py::init<const std::string &>(), py::arg("backend") = "auto",
+           "backend: 'gl', 'vulkan', or 'auto': OpenGL if it starts, otherwise Vulkan. Raises DeviceError, which names "
+           "each way that was tried and why it failed.")
       .def_property_readonly(
           "description", [](Device &device) { return device.use().description(); }, "API, driver and kind of context.")
       .def_property_readonly(

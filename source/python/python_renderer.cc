@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "python_renderer.hh"
 
+#include "gpu_create_device.hh"
+#ifdef GNOMON_PYTHON_VULKAN
+#include "shader_check_spirv.hh"
+#endif
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -20,17 +28,25 @@ void check_process(pid_t process)
   }
 }
 
-std::unique_ptr<gpu::Device> make_device()
+std::unique_ptr<gpu::Device> make_device(const std::string &backend)
 {
+  if (std::ranges::find(gpu::drawing_backend_names, backend) == gpu::drawing_backend_names.end()) {
+    throw std::invalid_argument(
+        fmt::format("backend: '{}' is none of {}", backend, fmt::join(gpu::drawing_backend_names, ", ")));
+  }
   // Before the device, because a driver starts threads also where it fails.
   static const pid_t first_process = ::getpid();
   check_process(first_process);
-  return gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+  gpu::DeviceDesc desc{.backend = gpu::backend_of(backend), .shader_cache_folder = gpu::default_shader_cache_folder()};
+#ifdef GNOMON_PYTHON_VULKAN
+  desc.compile_spirv = shader_check::compile_spirv;
+#endif
+  return gpu::create_device(desc);
 }
 
 }  // namespace
 
-Device::Device() : device_(make_device()) {}
+Device::Device(const std::string &backend) : device_(make_device(backend)) {}
 
 Device::~Device()
 {

@@ -20,8 +20,11 @@ namespace gnomon::python {
  */
 class Device {
  public:
-  /** \throws gpu::Error; also in a child of a process that made a device before the fork */
-  Device();
+  /**
+   * \a backend: of gpu::drawing_backend_names. \throws std::invalid_argument if it is another; gpu::Error, also in a
+   * child of a process that made a device before the fork
+   */
+  explicit Device(const std::string &backend);
   ~Device();
   Device(const Device &) = delete;
   Device &operator=(const Device &) = delete;

@@ -411,14 +411,15 @@ TEST_F(CliRenderTest, AWarmFrameTakesNoMemoryFromTheSystem)
 TEST_F(CliRenderTest, WithoutADriverTheErrorNamesEachAttempt)
 {
   const std::string hide =
-      "env -u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent '" GNOMON_PROGRAM "' ";
+      "env -u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent VK_ICD_FILENAMES=/nonexistent "
+      "VK_DRIVER_FILES=/nonexistent '" GNOMON_PROGRAM "' ";
   const std::string command =
       "cd '" + folder.string() + "' && " + hide + "render " + example("plaza") + " -o out.png 2> stderr.txt";
   const int status = std::system(command.c_str());
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 5);
   const std::string err = read("stderr.txt");
-  for (const char *way : {"EGL surfaceless", "EGL device", "hidden window"}) {
+  for (const char *way : {"EGL surfaceless", "EGL device", "hidden window", "Vulkan"}) {
     EXPECT_NE(err.find(way), std::string::npos) << err;
   }
 }

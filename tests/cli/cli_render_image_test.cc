@@ -63,7 +63,7 @@ std::vector<float> render(gpu::Device &device, const scene::Scene &scene, glm::i
 
 TEST_P(ReferenceTest, ErrorIsBelowBlenderEevees)
 {
-  const auto device = test::testing_gl_device();
+  const auto device = test::testing_device(test::testing_backend());
   if (!device) {
     return;
   }

@@ -227,11 +227,11 @@ INSTANTIATE_TEST_SUITE_P(
                 2},
         Planted{"OnlyWithASurfaceFunction",
                 "eevee_surfaces",
-                {{"eevee/eevee_lit_vert.glsl", "layout(location = 9) flat out", "layout(location = 17) flat out"},
-                 {"eevee/eevee_surfaces_frag.glsl", "layout(location = 9) flat in", "layout(location = 17) flat in"}},
+                {{"eevee/eevee_lit_vert.glsl", "layout(location = 9) flat out", "layout(location = 10) flat out"},
+                 {"eevee/eevee_surfaces_frag.glsl", "layout(location = 9) flat in", "layout(location = 10) flat in"}},
                 "eevee/eevee_lit_vert.glsl",
-                "layout(location = 17) flat out",
-                "overlapping use of location 17",
+                "layout(location = 10) flat out",
+                "overlapping use of location 10",
                 // In both stages.
                 2},
         Planted{

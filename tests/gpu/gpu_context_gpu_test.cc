@@ -95,6 +95,9 @@ class HostContextGpu : public testing::Test {
  protected:
   void SetUp() override
   {
+    if (test::testing_backend() != "gl") {
+      GTEST_SKIP() << "of OpenGL alone";
+    }
     if (!host.is_current()) {
       if (const char *ci = std::getenv("CI"); ci && *ci) {
         FAIL() << "CI is set and EGL gives no surfaceless context";
@@ -317,7 +320,7 @@ TEST(DeviceGpu, HostWithoutAContextIsAnError)
   expect_contains(error_of([] { static_cast<void>(create_gl_device({.context = ContextKind::Host})); }), "current");
 }
 
-class HeadlessGpu : public test::GpuDeviceTest {};
+class HeadlessGpu : public test::GlDeviceTest {};
 
 TEST_F(HeadlessGpu, DescribesItself)
 {

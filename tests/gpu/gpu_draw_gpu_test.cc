@@ -178,8 +178,10 @@ void main()
                                    count));
   };
   std::vector<Shader> shaders;
-  for (const int count : {1, 3, 16, 17, 5}) {
-    shaders.push_back(shader_of(count));
+  for (const int count : {1, 3, 8, 16, 17, 5}) {
+    if (std::size_t(count) * sizeof(glm::vec4) <= device->limits().push_constant_bytes_max) {
+      shaders.push_back(shader_of(count));
+    }
   }
   CommandList list;
   begin(list, shaders[0]);
@@ -307,10 +309,10 @@ layout(location = 0) flat out uvec2 instance;
 void main()
 {
   // A row for each instance, of a quad of two triangles.
-  vec2 corner = vec2(gl_VertexID % 3 == 1 || gl_VertexID == 4 ? 1 : 0, gl_VertexID % 3 == 2 || gl_VertexID == 4 ? 1 : 0);
-  corner = gl_VertexID < 3 ? corner : gl_VertexID == 3 ? vec2(1, 0) : gl_VertexID == 4 ? vec2(1, 1) : vec2(0, 1);
-  gl_Position = vec4(corner.x * 2 - 1, (corner.y + gl_InstanceID) / 8.0 - 1, 0.5, 1);
-  instance = uvec2(gl_InstanceID, 5);
+  vec2 corner = vec2(VERTEX_INDEX % 3 == 1 || VERTEX_INDEX == 4 ? 1 : 0, VERTEX_INDEX % 3 == 2 || VERTEX_INDEX == 4 ? 1 : 0);
+  corner = VERTEX_INDEX < 3 ? corner : VERTEX_INDEX == 3 ? vec2(1, 0) : VERTEX_INDEX == 4 ? vec2(1, 1) : vec2(0, 1);
+  gl_Position = vec4(corner.x * 2 - 1, (corner.y + INSTANCE_INDEX) / 8.0 - 1, 0.5, 1);
+  instance = uvec2(INSTANCE_INDEX, 5);
 })",
                                     INSTANCE_FRAG);
   CommandList list;
@@ -462,6 +464,59 @@ TEST_F(DrawGpu, EmptyBatchAndEmptyListDrawNothing)
   list.end_pass();
   const std::vector<glm::vec4> pixels = submitted(list);
   EXPECT_EQ(std::ranges::count(pixels, glm::vec4(-1)), GRID * GRID);
+}
+
+TEST_F(DrawGpu, AStaleIdIsAnErrorInEveryBuildAndTheDeviceRemainsUsable)
+{
+  const Batch full = test::full_triangle(*device, 0);
+  Shader shader = make_shader(*device, "color", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  const auto drawing = [&](float value) {
+    CommandList list;
+    begin(list, shader);
+    push_constants(list, shader, glm::vec4(value));
+    append_draw(list, full);
+    list.end_pass();
+    return list;
+  };
+  const CommandList list = drawing(1);
+  shader = make_shader(*device, "other", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  const std::string message = test::error_of([&] { device->submit(list); });
+  test::expect_contains(message, "shader id");
+  test::expect_contains(message, "stale");
+  EXPECT_EQ(submitted(drawing(2)), std::vector<glm::vec4>(GRID * GRID, glm::vec4(2)));
+}
+
+TEST_F(DrawGpu, DeclaredSamplersThatAreNotBoundReadZeros)
+{
+  const Shader reader = make_shader(*device, "reader", test::CLIP_SPACE_VERT, R"(
+layout(binding = 16) uniform sampler2D flat_texture;
+layout(binding = 17) uniform sampler2DArray layers;
+layout(binding = 18) uniform sampler2DShadow flat_depth;
+layout(binding = 19) uniform sampler2DArrayShadow depth_layers;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(texture(flat_texture, vec2(0.5)).r, texture(layers, vec3(0.5)).r, texture(flat_depth, vec3(0.5)),
+                texture(depth_layers, vec4(0.5)));
+})");
+  const Batch full = test::full_triangle(*device, 0);
+  const auto record = [&](bool is_second) {
+    CommandList list;
+    begin(list, reader);
+    for (int slot = 16; slot < 20; slot++) {
+      list.bind_texture(slot, 0, 0);
+    }
+    append_draw(list, full);
+    if (is_second) {
+      append_draw(list, full);
+    }
+    list.end_pass();
+    return list;
+  };
+  for (const bool is_second : {false, true}) {
+    // A reference of 0.5 is nearer than the far plane: not in shadow.
+    EXPECT_EQ(submitted(record(is_second)), std::vector<glm::vec4>(GRID * GRID, glm::vec4(0, 0, 1, 1)));
+  }
 }
 
 TEST_F(DrawGpu, TimerGivesFiniteSecondsThatGrowWithTheWork)

@@ -3,7 +3,9 @@
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
 
-#include "gl/gl_device.hh"
+#include "internal/gpu_id_table.hh"
+
+#include <epoxy/gl.h>
 
 #include <deque>
 
@@ -16,11 +18,11 @@ using test::Hook;
 using test::make_shader;
 
 /** A device with a driver that fails on demand, without debug messages, as in release builds. */
-class FailureGpu : public test::GpuDeviceTest {
+class FailureGpu : public test::GlDeviceTest {
  protected:
   void SetUp() override
   {
-    test::GpuDeviceTest::SetUp();
+    test::GlDeviceTest::SetUp();
     if (!device) {
       return;
     }
@@ -161,17 +163,6 @@ TEST_F(FailureGpu, AFailedSubmitLeavesAUsableDevice)
   expect_drawn(full, 7);
 }
 
-TEST_F(FailureGpu, AStaleIdIsAnErrorInEveryBuild)
-{
-  const Batch full = test::full_triangle(*device, 0);
-  const CommandList list = drawing(full, 1);
-  shader = make_shader(*device, "other", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
-  const std::string message = error_of([&] { device->submit(list); });
-  expect_contains(message, "shader id");
-  expect_contains(message, "stale");
-  expect_drawn(full, 2);
-}
-
 TEST_F(FailureGpu, ATimerWithoutBitsGivesNothing)
 {
   const TimerQuery timer = device->create_timer_query("t");
@@ -198,42 +189,6 @@ TEST(TimerTicks, WrapAtTheBitsOfTheCounter)
   EXPECT_EQ(elapsed_ticks((std::uint64_t(1) << 36U) - 4, 6, 36), 10U);
   EXPECT_EQ(elapsed_ticks(0xFFFFFFFFU, 0, 32), 1U);
   EXPECT_EQ(elapsed_ticks(3, 3, 30), 0U);
-}
-
-TEST_F(FailureGpu, DeclaredSamplersThatAreNotBoundReadZeros)
-{
-  const Shader reader = make_shader(*device, "reader", test::CLIP_SPACE_VERT, R"(
-layout(binding = 16) uniform sampler2D flat_texture;
-layout(binding = 17) uniform sampler2DArray layers;
-layout(binding = 18) uniform sampler2DShadow flat_depth;
-layout(binding = 19) uniform sampler2DArrayShadow depth_layers;
-layout(location = 0) out vec4 result;
-void main()
-{
-  result = vec4(texture(flat_texture, vec2(0.5)).r, texture(layers, vec3(0.5)).r, texture(flat_depth, vec3(0.5)),
-                texture(depth_layers, vec4(0.5)));
-})");
-  const Batch full = test::full_triangle(*device, 0);
-  const auto record = [&](bool is_second) {
-    CommandList list;
-    list.begin_pass("p", framebuffer, {});
-    list.set_shader(reader.id());
-    list.set_state(State::WriteColor);
-    for (int slot = 16; slot < 20; slot++) {
-      list.bind_texture(slot, 0, 0);
-    }
-    test::append_draw(list, full);
-    if (is_second) {
-      test::append_draw(list, full);
-    }
-    list.end_pass();
-    return list;
-  };
-  for (const bool is_second : {false, true}) {
-    device->submit(record(is_second));
-    // A reference of 0.5 is nearer than the far plane: not in shadow.
-    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(0, 0, 1, 1)));
-  }
 }
 
 }  // namespace

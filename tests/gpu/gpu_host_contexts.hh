@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_device_fixture.hh"
+
 #include <epoxy/egl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -216,6 +218,9 @@ class HostContextTest : public testing::TestWithParam<HostKind> {
  protected:
   void SetUp() override
   {
+    if (testing_backend() != "gl") {
+      GTEST_SKIP() << "of OpenGL alone";
+    }
     std::string reason = "EGL gives no surfaceless context";
     if (GetParam() != HostKind::Glx) {
       context = std::make_unique<EglHostContext>(GetParam() == HostKind::EglDebug);

@@ -71,11 +71,20 @@ struct ShaderTexts {
   }
 };
 
-/** A shader of texts without `#version`, which may use the slots. */
+/** A shader of texts without `#version`, which may use the slots, VERTEX_INDEX and INSTANCE_INDEX. */
 inline gpu::Shader make_shader(gpu::Device &device, const std::string &name, const std::string &vertex,
                                const std::string &fragment, const std::string &geometry = "")
 {
-  const std::string head = "#version 450 core\n#include \"shared/slots_shared.h\"\n";
+  const std::string head = R"(#version 450 core
+#include "shared/slots_shared.h"
+#ifdef VULKAN
+#define VERTEX_INDEX gl_VertexIndex
+#define INSTANCE_INDEX gl_InstanceIndex
+#else
+#define VERTEX_INDEX gl_VertexID
+#define INSTANCE_INDEX gl_InstanceID
+#endif
+)";
   const ShaderTexts texts{{{"vert", head + vertex}, {"geom", head + geometry}, {"frag", head + fragment}}};
   return device.create_shader({name, "vert", geometry.empty() ? "" : "geom", "frag", {}}, texts.files(),
                               shader_check::reflect);

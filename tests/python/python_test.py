@@ -318,6 +318,17 @@ class Pictures(unittest.TestCase):
         self.assertEqual((picture.shape, picture.dtype), ((18, 32, 4), numpy.float32))
         numpy.testing.assert_allclose(picture, numpy.broadcast_to((0.5, 0.25, 0.125, 1), picture.shape), rtol=1e-5)
 
+    def test_vulkan_draws_the_same_picture(self):
+        try:
+            vulkan = gnomon.Device(backend="vulkan")
+        except gnomon.DeviceError as error:
+            self.skipTest(str(error))
+        self.assertRegex(vulkan.description, r"^Vulkan 1\.")
+        pictures = [
+            gnomon.Renderer(device, square_scene(), (32, 18), **SMALL).render() for device in (self.device, vulkan)
+        ]
+        numpy.testing.assert_allclose(*pictures, rtol=1e-5)
+
     def test_multiple_scattering_makes_a_rough_metal_brighter(self):
         scene = square_scene()
         scene.materials[0].edit(metallic=1, roughness=1)
@@ -729,8 +740,9 @@ class Page(unittest.TestCase):
         # Only one device can exist at a time.
         with self.assertRaisesRegex(gnomon.DeviceError, "already current"):
             gnomon.Device()
+        with self.assertRaisesRegex(ValueError, "'metal' is none of auto, gl, vulkan"):
+            gnomon.Device("metal")
         names.clear()
-
 
     def check_data_set(self, names, line_counts):
         """Depth, normals and ids against the rays of a unit sphere at the origin and a floor at y = -1."""

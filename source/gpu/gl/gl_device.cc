@@ -27,6 +27,8 @@ Limits query_limits()
   limits.buffer_texels_max = get(GL_MAX_TEXTURE_BUFFER_SIZE);
   limits.uniform_block_bytes_max = std::size_t(get(GL_MAX_UNIFORM_BLOCK_SIZE));
   limits.storage_block_bytes_max = std::size_t(get(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
+  // They are a uniform block.
+  limits.push_constant_bytes_max = limits.uniform_block_bytes_max;
   limits.color_attachment_max = std::min(get(GL_MAX_COLOR_ATTACHMENTS), get(GL_MAX_DRAW_BUFFERS));
   // OpenGL 4.6 has it; before, only extensions have.
   if (epoxy_gl_version() >= 46 || epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
@@ -56,12 +58,6 @@ Limits query_limits()
 }
 
 }  // namespace
-
-std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits)
-{
-  const std::uint64_t mask = bits >= 64 ? ~std::uint64_t(0) : (std::uint64_t(1) << unsigned(bits)) - 1;
-  return (end - begin) & mask;
-}
 
 void GlDevice::calls_begin()
 {
@@ -349,8 +345,8 @@ std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc)
   constexpr int version_needed = 45;
   const int version = epoxy_gl_version();
   if (version < version_needed) {
-    throw Error("OpenGL {}.{} is needed, but the {} context has {}.{}", version_needed / 10, version_needed % 10,
-                context ? "headless" : "host's", version / 10, version % 10);
+    throw TransientError("OpenGL {}.{} is needed, but the {} context has {}.{}", version_needed / 10,
+                         version_needed % 10, context ? "headless" : "host's", version / 10, version % 10);
   }
   return std::make_unique<GlDevice>(std::move(context), desc);
 }

@@ -6,6 +6,7 @@
 #include "gl_context.hh"
 #include "gl_state.hh"
 #include "gl_stream.hh"
+#include "internal/gpu_id_table.hh"
 
 #include <functional>
 #include <optional>
@@ -20,41 +21,6 @@ struct GlFormat {
 [[nodiscard]] GlFormat gl_format(Format format);
 /** GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY or GL_TEXTURE_BUFFER. */
 [[nodiscard]] GLenum gl_target(TextureKind kind);
-
-/** Difference \a end - \a begin of a counter with \a bits bits that may have wrapped once; nanoseconds. */
-[[nodiscard]] std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits);
-
-/** Objects of the backend, looked up by resource id. */
-template <typename T>
-class IdTable {
- public:
-  explicit IdTable(ResourceKind kind) : kind_(kind) {}
-
-  T &insert(ResourceId id, T value)
-  {
-    if (index_of(id) >= entries_.size()) {
-      entries_.resize(index_of(id) + 1);
-    }
-    entries_[index_of(id)] = {id, std::move(value)};
-    return entries_[index_of(id)].second;
-  }
-  /** \throws Error if \a id is 0 or the id of a destroyed resource */
-  [[nodiscard]] T &at(ResourceId id)
-  {
-    if (id == 0 || index_of(id) >= entries_.size() || entries_[index_of(id)].first != id) {
-      throw Error("{} id {} is stale or 0: there is no such resource", to_string(kind_), id);
-    }
-    return entries_[index_of(id)].second;
-  }
-  void erase(ResourceId id)
-  {
-    entries_[index_of(id)] = {};
-  }
-
- private:
-  ResourceKind kind_;
-  std::vector<std::pair<ResourceId, T>> entries_;
-};
 
 struct GlVertexType {
   GLenum type = GL_NONE;

@@ -91,7 +91,7 @@ struct Receiver {
 inline constexpr const char *fullscreen_vert = R"(
 void main()
 {
-  gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+  gl_Position = vec4(vec2(VERTEX_INDEX & 1, VERTEX_INDEX >> 1) * 4.0 - 1.0, 0.0, 1.0);
 })";
 
 /** A store on a device, its programs, and one array of cubes. */

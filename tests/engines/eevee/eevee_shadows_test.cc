@@ -344,17 +344,22 @@ TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirShadows)
   EXPECT_TRUE(scene_shadows.limits().empty());
 }
 
-TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
+TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChoosesOrEachLayerHasAPass)
 {
-  const std::unique_ptr<gpu::Device> old = gpu::create_null_device({.has_vertex_layer = false});
   SceneShadows plain;
-  const auto sync_plain = [&](const ShadowSettings &asked) {
+  const auto sync_plain = [&](const gpu::Limits &limits, const ShadowSettings &asked) {
     const std::vector<ShadowLamp> identified = identified_lamps();
-    plain.sync(old->limits(), identified, bounds_ws(), lamps.lights, asked);
+    plain.sync(limits, identified, bounds_ws(), lamps.lights, asked);
   };
-  EXPECT_THROW(sync_plain({.layer_pass = LayerPass::Layered}), gpu::Error);
-  sync_plain({});
+  gpu::Limits limits;
+  limits.has_vertex_layer = false;
+  EXPECT_THROW(sync_plain(limits, {.layer_pass = LayerPass::Layered}), gpu::Error);
+  sync_plain(limits, {});
   EXPECT_EQ(plain.layer_pass(), LayerPass::Geometry) << "the next best";
+  limits.has_geometry_shader = false;
+  EXPECT_THROW(sync_plain(limits, {.layer_pass = LayerPass::Geometry}), gpu::Error);
+  sync_plain(limits, {});
+  EXPECT_EQ(plain.layer_pass(), LayerPass::Single);
 }
 
 }  // namespace

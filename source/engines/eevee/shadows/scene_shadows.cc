@@ -13,12 +13,19 @@ namespace gnomon::eevee {
 static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
 {
   if (asked == LayerPass::Layered && !limits.has_vertex_layer) {
-    throw gpu::Error("the layered shadow pass needs GL_ARB_shader_viewport_layer_array, which this device lacks");
+    throw gpu::Error(
+        "the layered shadow pass needs vertex shaders that write gl_Layer (GL_ARB_shader_viewport_layer_array), which "
+        "this device lacks");
+  }
+  if (asked == LayerPass::Geometry && !limits.has_geometry_shader) {
+    throw gpu::Error("the shadow pass with geometry shaders needs those, which this device lacks");
   }
   if (asked != LayerPass::Best) {
     return asked;
   }
-  return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
+  return limits.has_vertex_layer      ? LayerPass::Layered
+         : limits.has_geometry_shader ? LayerPass::Geometry
+                                      : LayerPass::Single;
 }
 
 /** \throws gpu::Error */

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gpu_device.hh"
+
+#include <array>
+#include <span>
+
+namespace gnomon::gpu {
+
+/** Auto: OpenGL 4.5 if it starts, otherwise Vulkan. Null: draws nothing. */
+enum class Backend : std::uint8_t { Auto, OpenGl, Vulkan, Null };
+
+/** "auto", "gl", "vulkan", "null": for users, in the order of Backend. */
+inline constexpr std::array<std::string_view, 4> backend_names = {"auto", "gl", "vulkan", "null"};
+/** Those that draw. */
+inline constexpr std::span<const std::string_view> drawing_backend_names = std::span(backend_names).first<3>();
+/** \throws Error if \a name is none of backend_names */
+[[nodiscard]] Backend backend_of(std::string_view name);
+
+struct DeviceDesc {
+  Backend backend = Backend::Auto;
+  /** As VulkanDeviceDesc::compile_spirv. Empty: Vulkan does not start. */
+  SpirvCompiler compile_spirv{};
+  MessageSink sink{};
+  /** As GlDeviceDesc::shader_cache_folder. */
+  std::filesystem::path shader_cache_folder{};
+};
+
+/**
+ * Create a device on a context of its own. If Backend::Auto takes Vulkan, the sink gets a line that says so and why.
+ *
+ * \throws Error with the reasons, each named, for which the backend does not start
+ */
+[[nodiscard]] std::unique_ptr<Device> create_device(const DeviceDesc &desc);
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+#define VOLK_IMPLEMENTATION
+#include "vulkan_context.hh"
+
+#include "gpu_error.hh"
+#include "trace.hh"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace gnomon::gpu {
+
+namespace {
+
+constexpr std::uint32_t api_version = VK_API_VERSION_1_3;
+constexpr const char *validation_layer = "VK_LAYER_KHRONOS_validation";
+
+/** The features that a device must have, and those of them that are used where a device has them. */
+struct Features {
+  VkPhysicalDeviceProvokingVertexFeaturesEXT provoking_vertex{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROVOKING_VERTEX_FEATURES_EXT, nullptr, VK_FALSE, VK_FALSE};
+  VkPhysicalDeviceVulkan13Features v13{};
+  VkPhysicalDeviceVulkan12Features v12{};
+  VkPhysicalDeviceFeatures2 core{};
+
+  Features()
+  {
+    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+    v13.pNext = &provoking_vertex;
+    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    v12.pNext = &v13;
+    core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    core.pNext = &v12;
+  }
+  Features(const Features &) = delete;
+  Features &operator=(const Features &) = delete;
+
+  struct Named {
+    const char *name;
+    VkBool32 *value;
+  };
+  std::vector<Named> required()
+  {
+    return {{"multiDrawIndirect", &core.features.multiDrawIndirect},
+            {"drawIndirectFirstInstance", &core.features.drawIndirectFirstInstance},
+            {"depthClamp", &core.features.depthClamp},
+            {"timelineSemaphore", &v12.timelineSemaphore},
+            {"hostQueryReset", &v12.hostQueryReset},
+            {"dynamicRendering", &v13.dynamicRendering},
+            {"synchronization2", &v13.synchronization2},
+            {"provokingVertexLast", &provoking_vertex.provokingVertexLast}};
+  }
+};
+
+bool has_extension(VkPhysicalDevice device, const char *name)
+{
+  std::uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  return std::ranges::any_of(extensions, [&](const auto &e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+/** Index of a queue family for graphics; empty: there is none. */
+std::optional<std::uint32_t> graphics_family(VkPhysicalDevice device, int &timestamp_bits)
+{
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (std::uint32_t i = 0; i < count; i++) {
+    if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) {
+      timestamp_bits = int(families[i].timestampValidBits);
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+/** What \a device lacks, by name. */
+std::vector<std::string> missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties &properties)
+{
+  std::vector<std::string> missing;
+  if (properties.apiVersion < api_version) {
+    missing.push_back(fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(properties.apiVersion),
+                                  VK_API_VERSION_MINOR(properties.apiVersion)));
+    return missing;
+  }
+  int timestamp_bits = 0;
+  if (!graphics_family(device, timestamp_bits)) {
+    missing.emplace_back("a queue for graphics");
+  }
+  if (!has_extension(device, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME)) {
+    missing.emplace_back(VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME);
+  }
+  Features features;
+  vkGetPhysicalDeviceFeatures2(device, &features.core);
+  for (const Features::Named &feature : features.required()) {
+    if (*feature.value == VK_FALSE) {
+      missing.emplace_back(feature.name);
+    }
+  }
+  return missing;
+}
+
+/** Devices with a greater number are preferred. */
+int rank_of(VkPhysicalDeviceType type)
+{
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 1;
+    default: return 0;
+  }
+}
+
+/** Loads what volk has of the loader. Its functions are global, and serve all instances. */
+void load_loader()
+{
+  if (!vkCreateInstance && volkInitialize() != VK_SUCCESS) {
+    throw TransientError("Vulkan: there is no loader (libvulkan.so.1)");
+  }
+}
+
+/** Held while the functions of the loader are loaded. */
+std::mutex loader_mutex;
+
+}  // namespace
+
+VulkanContext::VulkanContext(bool is_debug, std::function<void(std::string_view message)> sink) : sink_(std::move(sink))
+{
+  const trace::Span span("Vulkan device");
+  try {
+    create_instance(is_debug);
+    create_device();
+    check_messages("Vulkan");
+  }
+  catch (...) {
+    destroy();
+    throw;
+  }
+}
+
+VulkanContext::~VulkanContext()
+{
+  destroy();
+}
+
+void VulkanContext::destroy()
+{
+  if (device != VK_NULL_HANDLE) {
+    vk.vkDestroyDevice(device, nullptr);
+  }
+  for (const std::string &message : take_messages()) {
+    sink_(message);
+  }
+  if (messenger_ != VK_NULL_HANDLE) {
+    instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_,
+                                                                                              nullptr);
+  }
+  if (instance_ != VK_NULL_HANDLE) {
+    vkDestroyInstance(instance_, nullptr);
+  }
+}
+
+void VulkanContext::create_instance(bool is_debug)
+{
+  const std::scoped_lock lock(loader_mutex);
+  load_loader();
+  const VkApplicationInfo application{
+      VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 0, "gnomon", 0, api_version};
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &application;
+  constexpr VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  VkValidationFeaturesEXT validation{};
+  validation.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+  validation.enabledValidationFeatureCount = 1;
+  validation.pEnabledValidationFeatures = &synchronisation;
+  const std::vector<const char *> extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                                VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  if (is_debug) {
+    info.pNext = &validation;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &validation_layer;
+    info.enabledExtensionCount = std::uint32_t(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+  }
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result == VK_ERROR_LAYER_NOT_PRESENT) {
+    throw Error("Vulkan: the validation layers are not installed ({})", validation_layer);
+  }
+  check(result, "Vulkan");
+  // Once: those of extensions, which another instance may lack, are not used.
+  if (!vkEnumeratePhysicalDevices) {
+    volkLoadInstanceOnly(instance_);
+  }
+  if (is_debug) {
+    VkDebugUtilsMessengerCreateInfoEXT messenger{};
+    messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    messenger.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    messenger.pfnUserCallback = &VulkanContext::receive_message;
+    messenger.pUserData = this;
+    check(instance_function<PFN_vkCreateDebugUtilsMessengerEXT>("vkCreateDebugUtilsMessengerEXT")(instance_, &messenger,
+                                                                                                  nullptr, &messenger_),
+          "Vulkan");
+    set_object_name_ = instance_function<PFN_vkSetDebugUtilsObjectNameEXT>("vkSetDebugUtilsObjectNameEXT");
+  }
+}
+
+void VulkanContext::create_device()
+{
+  std::uint32_t count = 0;
+  check(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "Vulkan");
+  std::vector<VkPhysicalDevice> devices(count);
+  check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "Vulkan");
+  std::vector<std::string> refused;
+  int rank = -1;
+  for (VkPhysicalDevice candidate : devices) {
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(candidate, &properties);
+    const std::vector<std::string> missing = missing_in(candidate, properties);
+    if (!missing.empty()) {
+      refused.push_back(fmt::format("{} lacks {}", properties.deviceName, fmt::join(missing, ", ")));
+    }
+    else if (rank_of(properties.deviceType) > rank) {
+      rank = rank_of(properties.deviceType);
+      physical_device = candidate;
+    }
+  }
+  if (physical_device == VK_NULL_HANDLE) {
+    throw TransientError("Vulkan: {}",
+                         refused.empty() ? "there is no device" : fmt::format("{}", fmt::join(refused, "; ")));
+  }
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
+  vkGetPhysicalDeviceProperties2(physical_device, &properties);
+  limits = properties.properties.limits;
+  is_software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const std::uint32_t version = properties.properties.apiVersion;
+  description = fmt::format("Vulkan {}.{}.{}, {} ({} {})", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                            VK_API_VERSION_PATCH(version), properties.properties.deviceName, driver.driverName,
+                            driver.driverInfo);
+  queue_family = *graphics_family(physical_device, timestamp_bits);
+
+  Features present;
+  vkGetPhysicalDeviceFeatures2(physical_device, &present.core);
+  has_geometry_shader = present.core.features.geometryShader == VK_TRUE;
+  has_anisotropy = present.core.features.samplerAnisotropy == VK_TRUE;
+  has_vertex_layer = present.v12.shaderOutputLayer == VK_TRUE;
+  Features used;
+  for (const Features::Named &feature : used.required()) {
+    *feature.value = VK_TRUE;
+  }
+  used.core.features.geometryShader = present.core.features.geometryShader;
+  used.core.features.samplerAnisotropy = present.core.features.samplerAnisotropy;
+  used.v12.shaderOutputLayer = present.v12.shaderOutputLayer;
+
+  const float priority = 1.0F;
+  VkDeviceQueueCreateInfo queues{};
+  queues.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queues.queueFamilyIndex = queue_family;
+  queues.queueCount = 1;
+  queues.pQueuePriorities = &priority;
+  const char *const extension = VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME;
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &used.core;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queues;
+  info.enabledExtensionCount = 1;
+  info.ppEnabledExtensionNames = &extension;
+  check(vkCreateDevice(physical_device, &info, nullptr, &device),
+        fmt::format("Vulkan: {}", properties.properties.deviceName));
+  volkLoadDeviceTable(&vk, device);
+  vk.vkGetDeviceQueue(device, queue_family, 0, &queue);
+}
+
+VkBool32 VKAPI_PTR VulkanContext::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/,
+                                                  VkDebugUtilsMessageTypeFlagsEXT /*types*/,
+                                                  const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
+{
+  // Exceptions must not propagate through the driver, so messages are stored until check_messages().
+  auto *context = static_cast<VulkanContext *>(user);
+  const std::scoped_lock lock(context->messages_mutex_);
+  context->messages_.emplace_back(data->pMessage);
+  return VK_FALSE;
+}
+
+std::vector<std::string> VulkanContext::take_messages()
+{
+  const std::scoped_lock lock(messages_mutex_);
+  return std::exchange(messages_, {});
+}
+
+void VulkanContext::check(VkResult result, std::string_view what)
+{
+  note_lost(result);
+  switch (result) {
+    case VK_ERROR_DEVICE_LOST: check_lost(what); break;
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY: throw TransientError("{}: the driver is out of memory", what);
+    case VK_ERROR_INCOMPATIBLE_DRIVER: throw TransientError("{}: there is no driver", what);
+    default:
+      if (result < 0) {
+        throw Error("{}: the driver reports VkResult {}", what, int(result));
+      }
+  }
+}
+
+void VulkanContext::check_lost(std::string_view what) const
+{
+  if (is_lost_) {
+    throw DeviceLost("{}: the Vulkan device is lost; create a new device", what);
+  }
+}
+
+void VulkanContext::check_messages(std::string_view what)
+{
+  check_lost(what);
+  const std::vector<std::string> messages = take_messages();
+  if (!messages.empty()) {
+    throw Error("{}: the validation layers report: {}", what, fmt::join(messages, "; "));
+  }
+}
+
+void VulkanContext::label_object(VkObjectType type, std::uint64_t handle, const std::string &name)
+{
+  if (set_object_name_) {
+    const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type, handle,
+                                             name.c_str()};
+    set_object_name_(device, &info);
+  }
+}
+
+}  // namespace gnomon::gpu

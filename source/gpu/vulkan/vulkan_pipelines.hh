@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "vulkan_shaders.hh"
+
+#include "gpu_state.hh"
+
+#include <array>
+#include <compare>
+#include <map>
+#include <string>
+
+namespace gnomon::gpu {
+
+/** What a pipeline of a program depends on; the rest is dynamic. */
+struct PipelineKey {
+  static constexpr std::size_t color_count_max = 8;
+  /** Of State, what cannot be dynamic. */
+  std::uint32_t state = 0;
+  /** VK_FORMAT_UNDEFINED: there is no such attachment. */
+  std::array<VkFormat, color_count_max> colors{};
+  VkFormat depth = VK_FORMAT_UNDEFINED;
+  /** Draws take vertices from no buffer, or instances from a buffer of objects. */
+  bool is_procedural = false;
+  bool has_objects = false;
+
+  auto operator<=>(const PipelineKey &) const = default;
+};
+
+/** The bits of \a state that a pipeline is made for. */
+[[nodiscard]] std::uint32_t pipeline_state(State state);
+
+/** Push constants of all programs: as many bytes as each device supports. */
+inline constexpr std::uint32_t push_constant_bytes = 128;
+
+/** A program with its pipelines. */
+class VulkanProgram {
+ public:
+  /** \throws Error that names the shader \a name */
+  VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages);
+  ~VulkanProgram();
+  VulkanProgram(const VulkanProgram &) = delete;
+  VulkanProgram &operator=(const VulkanProgram &) = delete;
+
+  /** Made at the first call for \a key. \throws Error */
+  [[nodiscard]] VkPipeline pipeline(const PipelineKey &key);
+  [[nodiscard]] VkPipelineLayout layout() const
+  {
+    return layout_;
+  }
+  [[nodiscard]] VkDescriptorSetLayout set_layout() const
+  {
+    return set_layout_;
+  }
+  [[nodiscard]] const SpirvInterface &interface() const
+  {
+    return interface_;
+  }
+
+ private:
+  void create(const std::vector<SpirvStage> &stages);
+  void destroy();
+  [[nodiscard]] VkPipeline make(const PipelineKey &key);
+
+  VulkanContext &context_;
+  std::string name_;
+  SpirvInterface interface_;
+  std::vector<VkPipelineShaderStageCreateInfo> stages_;
+  VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  std::map<PipelineKey, VkPipeline> pipelines_;
+};
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// `gnomon --backend vulkan` on the driver.
+#include "cli_process.hh"
+#include "gpu_device_fixture.hh"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+namespace gnomon {
+namespace {
+
+using test::example;
+using test::Finished;
+
+class CliVulkanTest : public test::ProgramTest {
+ protected:
+  void SetUp() override
+  {
+    if (!test::testing_device("vulkan") && !HasFailure()) {
+      GTEST_SKIP();
+    }
+  }
+  /** The program with \a variables of the environment. */
+  std::filesystem::path program_with(const std::string &variables)
+  {
+    write("program", "exec env " + variables + " '" GNOMON_PROGRAM "' \"$@\"\n");
+    std::filesystem::path path = folder / "program";
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
+  }
+};
+
+TEST_F(CliVulkanTest, ThePictureIsThatOfOpenGl)
+{
+  for (const std::string backend : {"gl", "vulkan"}) {
+    const Finished finished = run("render " + example("plaza") + " --size 64x36 --samples 2 --backend " + backend +
+                                  " -o " + backend + ".exr --json " + backend + ".json");
+    ASSERT_EQ(finished.status, 0) << finished.err;
+  }
+  EXPECT_NE(read("vulkan.json").find("\"Vulkan 1."), std::string::npos);
+  EXPECT_NE(read("gl.json").find("\"OpenGL"), std::string::npos);
+  const OIIO::ImageBuf gl((folder / "gl.exr").string());
+  const OIIO::ImageBuf vulkan((folder / "vulkan.exr").string());
+  const OIIO::ImageBufAlgo::CompareResults difference = OIIO::ImageBufAlgo::compare(gl, vulkan, 1e-4F, 1e-4F);
+  ASSERT_FALSE(difference.error);
+  // Mesa compiles GLSL and SPIR-V in two ways, so that the last digits differ.
+  EXPECT_LE(difference.rms_error, 1e-5);
+}
+
+TEST_F(CliVulkanTest, AutoTakesItWhereOpenGlDoesNotStartAndSaysWhy)
+{
+  const Finished finished =
+      run("render " + example("plaza") + " --size 16x9 -o out.exr",
+          program_with("-u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent"));
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  for (const char *part : {"gnomon: backend: Vulkan 1.", "because OpenGL does not start", "EGL surfaceless"}) {
+    EXPECT_NE(finished.err.find(part), std::string::npos) << finished.err;
+  }
+}
+
+TEST_F(CliVulkanTest, WithoutADriverTheErrorIsThatOfVulkanAlone)
+{
+  const Finished finished = run("render " + example("plaza") + " --backend vulkan -o out.exr",
+                                program_with("VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent"));
+  EXPECT_EQ(finished.status, 5);
+  EXPECT_NE(finished.err.find("Vulkan: there is no driver"), std::string::npos) << finished.err;
+  EXPECT_EQ(finished.err.find("EGL"), std::string::npos) << finished.err;
+}
+
+}  // namespace
+}  // namespace gnomon
