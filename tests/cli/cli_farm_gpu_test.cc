@@ -181,7 +181,7 @@ TEST_F(FarmTest, TransientFailuresHaveAStatusOfTheirOwn)
   EXPECT_EQ(run(render + "missing/f.exr").status, 1);
   EXPECT_EQ(run("render missing.gltf -o f.exr").status, 1);
   setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
-  const Finished without_device = run(render + "f.exr");
+  const Finished without_device = run(render + "f.exr --backend gl");
   unsetenv("MESA_GL_VERSION_OVERRIDE");
   EXPECT_EQ(without_device.status, 5);
   EXPECT_NE(without_device.err.find("no OpenGL 4.5 context"), std::string::npos) << without_device.err;
