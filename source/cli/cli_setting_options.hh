@@ -53,7 +53,7 @@ inline constexpr const char *type_text = is_integer<Value>                 ? "IN
 
 /** The texts that an option takes for people: words or limits. Empty: any text, or those that the sentence lists. */
 template <typename Value>
-[[nodiscard]] std::string values_text(const scene::Description &row)
+[[nodiscard]] std::string option_values_text(const scene::Description &row)
 {
   std::vector<std::string_view> words;
   if constexpr (std::is_enum_v<Value>) {
@@ -213,7 +213,7 @@ class SettingOptions {
       sets_.push_back({.option = std::string(row.option),
                        .automatic = std::string(row.automatic),
                        .type = type_text<Value>,
-                       .values = values_text<Value>(row)});
+                       .values = option_values_text<Value>(row)});
       set = sets_.end() - 1;
       set->defaults.resize(defaults_.size());
     }
