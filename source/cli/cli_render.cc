@@ -31,6 +31,7 @@
 #include <array>
 #include <future>
 #include <iterator>
+#include <numeric>
 #include <optional>
 
 namespace gnomon::cli {
@@ -534,6 +535,7 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
   const Status status = is_skipped ? Status::Done : render(options, result);
   std::array<char, 65> host{};
   static_cast<void>(gethostname(host.data(), host.size() - 1));
+  const double picture_seconds = std::reduce(result.frame_seconds.begin(), result.frame_seconds.end());
   const nlohmann::json line = {{"part", name.index},
                                {"status", is_skipped                  ? "skipped"
                                           : status == Status::Done    ? "done"
@@ -542,6 +544,7 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
                                {"host", host.data()},
                                {"seconds", seconds_since(start)},
                                {"memory_bytes", memory_bytes_max()},
+                               {"picture_seconds", picture_seconds},
                                {"pictures", result.frame_seconds.size()},
                                {"samples", result.samples_drawn}};
   fmt::print("{}\n", line.dump());

@@ -69,6 +69,8 @@ TEST_F(FarmTest, PartsOfFramesAreThePicturesOfOneProcess)
   EXPECT_EQ(line["pictures"], 2);
   EXPECT_EQ(line["samples"], 3);
   EXPECT_GT(line["memory_bytes"], 1 << 20);
+  EXPECT_GT(line["picture_seconds"], 0.0);
+  EXPECT_LT(line["picture_seconds"], line["seconds"]);
   EXPECT_EQ(render_part(1)["status"], "skipped");
   // A device is not read, which might have no end.
   fs::create_symlink("/dev/full", folder / "f_4.exr.link");
