@@ -161,6 +161,9 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
     set_kind(shared.lamps, world_first + world->suns.size(), shared.placed.size(), LIGHT_WORLD);
   }
   set_kind(shared.lamps, emission_first, world_first, LIGHT_SURFACE);
+  if (shading == LampShading::Point) {
+    set_highlights(shared.lamps, shared.placed, emission_first, settings_.planned_sample_count(), scene_.bounds());
+  }
   ShadowSettings shadow = settings_.shadow;
   // These surfaces receive shadows, and the depths that are read back do not have them.
   shadow.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());

@@ -349,6 +349,8 @@ struct StorageList {
   /** The class with the most inputs, and the features, that the materials of the drawable objects need. */
   render_scene::MaterialClass widest_class = render_scene::MaterialClass::Plain;
   Feature material_features = Feature::None;
+  /** Least alpha of a specular lobe of these materials; 1 without one. */
+  float alpha_min = 1.0F;
   /** The material of at least one drawable object has a surface function. */
   bool has_surface_functions = false;
   /** The mode of the recorded passes. \see Engine::is_scene_deferred */

@@ -28,7 +28,8 @@ void set_texels(std::span<glm::vec4, LIGHT_TEXELS> texels, const shared::LightDa
   texels[3] =
       glm::vec4(light.spot_drop_outer, light.spot_inv_width, float(light.shadow_kind), float(light.shadow_index));
   texels[4] = glm::vec4(shape.axis_x_ws, shape.extent);
-  texels[5] = glm::vec4(shape.axis_y_ws, 0.0F);
+  texels[5] = glm::vec4(shape.axis_y_ws, shape.highlight_points_share);
+  texels[6] = glm::vec4(shape.center_ws, shape.highlight_extent);
 }
 
 std::span<glm::vec4, LIGHT_TEXELS> light_texels_of(SharedData &shared, std::size_t light)

@@ -301,6 +301,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
     desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
     desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
   }
+  if (has(features & declaration.features, Feature::LampShape)) {
+    desc.defines.push_back(fmt::format("HAS_LAMP_HIGHLIGHTS {}", int(has(features, Feature::LampHighlights))));
+  }
   return desc;
 }
 

@@ -96,6 +96,7 @@ void Engine::sync_materials(StorageList &stl) const
     return;
   }
   stl.material_features = Feature::None;
+  stl.alpha_min = 1.0F;
   stl.widest_class = MaterialClass::Plain;
   stl.transmissive.clear();
   stl.is_transmission_rough = false;
@@ -117,6 +118,11 @@ void Engine::sync_materials(StorageList &stl) const
         scene_.materials()[place].specular_f90 > 0.0F || *material_class >= MaterialClass::Layered || has_function;
     stl.material_features =
         stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(*material_class);
+    if (is_specular) {
+      // Textures and functions may make any lobe.
+      const bool is_uniform = *material_class == MaterialClass::Plain && !has_function;
+      stl.alpha_min = std::min(stl.alpha_min, is_uniform ? scene_.materials()[place].alpha : 0.0F);
+    }
     stl.widest_class = std::max(stl.widest_class, *material_class);
     if (*material_class == MaterialClass::Transmissive) {
       stl.transmissive.push_back({object, render_scene::is_blended(scene, mesh)});
@@ -175,8 +181,10 @@ void Engine::make_blocks(draw::Viewport &viewport)
       {glm::vec3(scene_.origin_ws()), settings_.light.has(LightPart::Kind::Emission) ? 1.0F : 0.0F});
   update_world_picture(shared.world, device, scene_, settings_);
   if (has(stl.features, Feature::Light)) {
-    stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
-                                (stl.material_features & Feature::Specular) | asked_features());
+    const Feature specular = stl.material_features & Feature::Specular;
+    stl.features = with_variant(
+        shared.lamps.features | shared.shadows.features() | specular | asked_features() |
+        (stl.alpha_min < shared.lamps.highlight_alpha ? Feature::LampShape | Feature::LampHighlights : Feature::None));
   }
   // The inputs of the programs of some materials, beyond those of the frame. They are the same for all viewports, as
   // they share the blocks.
