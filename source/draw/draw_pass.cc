@@ -158,6 +158,18 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
+bool ShadingGroup::is_current(const gpu::Device &device) const
+{
+  return std::ranges::all_of(bindings_, [&](const Binding &binding) {
+    if (const auto *range = std::get_if<gpu::BufferRange>(&binding.value)) {
+      return device.find(gpu::ResourceKind::Buffer, range->buffer) != nullptr;
+    }
+    const auto *texture = std::get_if<TextureBinding>(&binding.value);
+    return !texture || (device.find(gpu::ResourceKind::Texture, texture->texture) &&
+                        device.find(gpu::ResourceKind::Sampler, texture->sampler));
+  });
+}
+
 inline void ShadingGroup::append(const Call &call, bool may_extend, gpu::CommandList &list) const
 {
   std::uint32_t instance = call.object;
@@ -325,6 +337,11 @@ RecordCounts Pass::record(const View &view, VisibleObjects &visible, gpu::Comman
     counts.culled += of_group.culled;
   }
   return counts;
+}
+
+bool Pass::is_current(const gpu::Device &device) const
+{
+  return std::ranges::all_of(groups_, [&](const ShadingGroup &group) { return group.is_current(device); });
 }
 
 std::string Pass::serialize(const gpu::Device &device) const

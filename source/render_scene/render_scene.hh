@@ -107,6 +107,10 @@ class RenderScene {
   {
     return objects_;
   }
+  [[nodiscard]] const draw::ObjectBuffer &objects() const
+  {
+    return objects_;
+  }
   /** The mesh and node of an object. \pre objects().is_live(index), and not object_identity */
   [[nodiscard]] const RenderObject &object(draw::ObjectIndex index) const
   {

@@ -63,7 +63,7 @@ shared::LightData light_data(const scene::PlacedLamp &lamp)
 
 void leave_out(shared::LightData &light)
 {
-  // Sampled directions of the world also reflect `world_levels`, which are then black: update_world.
+  // Sampled directions of the world also reflect `world_levels`, which are then black: SceneWorld.
   light.color = glm::vec3(0.0F);
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Functions that several steps of a frame and Inspection share: the view of a sample, reasons.
+#include "eevee_renderbuffers.hh"
+#include "eevee_resource_report.hh"
+
 #include "eevee_camera.hh"
-#include "eevee_engine_data.hh"
-#include "eevee_film.hh"
 #include "eevee_frame.hh"
+#include "eevee_pixel_filter.hh"
 
 #include <glm/matrix.hpp>
 
@@ -12,23 +13,25 @@
 
 namespace gnomon::eevee {
 
-bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
+void RenderBuffers::make(draw::Viewport &viewport)
 {
-  switch (step) {
-    case FrameStep::Part::First: return part.is_first;
-    case FrameStep::Part::Rows: return part.row_count > 0;
-    case FrameStep::Part::Last: return part.is_last;
-    case FrameStep::Part::Each: break;
+  if (radiance) {
+    return;
   }
-  return true;
+  gpu::Device &device = viewport.device();
+  const gpu::Texture &depth = viewport.depth_texture();
+  radiance = create_target(device, "radiance", gpu::Format::RGBA32F, viewport.drawn_size_px());
+  depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&depth}});
+  main_fb = device.create_framebuffer({.name = "main_fb", .colors = {{&radiance}}, .depth = {&depth}});
+  view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
+  nearest = device.create_sampler({.name = "nearest"});
 }
 
-std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
+void RenderBuffers::resized()
 {
-  if (state.settings.shadow.kind == scene::ShadowKind::None) {
-    return "shadows are off";
-  }
-  return has(state.data.stl.features, Feature::Light) ? no_such_lamp : "no lamp gives light";
+  depth_fb = {};
+  main_fb = {};
+  radiance = {};
 }
 
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
@@ -85,6 +88,15 @@ shared::ViewData view_data(const draw::View &view, const Settings &settings, int
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
+}
+
+void RenderBuffers::report(draw::Viewport &viewport, ResourceReport &report) const
+{
+  static const gpu::Texture none;
+  report.add_target(viewport.has_depth_texture() ? viewport.depth_texture() : none, "depth", "each pixel is lit once",
+                    nothing_seen);
+  report.add_target(radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
+  report.add_block(view_block, "view_block", "whatever is drawn", nothing_seen);
 }
 
 }  // namespace gnomon::eevee
