@@ -286,7 +286,7 @@ class Device {
   virtual void timer_query_create(ResourceId id, const std::string &name) = 0;
   /** Never called for batches that are ranges of the shared buffers. */
   virtual void resource_destroy(ResourceKind kind, ResourceId id) = 0;
-  /** The driver's part of trim(). \return false: no resource of a notable size was destroyed since the last call */
+  /** The backend's part of trim(). \return false: there was nothing of a notable size to give back */
   virtual bool driver_trim()
   {
     return false;

@@ -43,10 +43,15 @@ void Device::trim() noexcept
     return;
   }
   const Calls calls(*this);
-  if (driver_trim()) {
+  try {
+    if (driver_trim()) {
 #ifdef __GLIBC__
-    malloc_trim(0);
+      malloc_trim(0);
 #endif
+    }
+  }
+  catch (const Error &) {
+    // A lost device has nothing to give back. The next call that draws reports it.
   }
 }
 
