@@ -7,13 +7,6 @@
 
 namespace gnomon::eevee {
 
-bool has_background(const Settings &settings, const render_scene::RenderScene &scene)
-{
-  return settings.light.has(LightPart::Kind::World) &&
-         (settings.background.kind == Background::Kind::Color ||
-          (settings.background.kind == Background::Kind::World && scene.scene().world()));
-}
-
 void BackgroundPass::record(ShaderCache &shaders, const render_scene::RenderScene &scene, const Settings &settings)
 {
   pass_.clear();

@@ -7,9 +7,6 @@
 
 namespace gnomon::eevee {
 
-/** Whether pixels without a surface show a background. */
-[[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
-
 /** Draws the background behind the objects of a viewport. Internal to the engine. */
 class BackgroundPass {
  public:

@@ -17,8 +17,7 @@ class Film {
   /** Record the film's own pass. \see add_to */
   void record(const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,
               const gpu::Sampler &nearest);
-  /** Record in \a pass that the sample in \a radiance is added to the film. \a origin_px: its pixel of the film's (0,
-   * 0) */
+  /** Record in \a pass that \a radiance is added to the film. \a origin_px: its pixel at pixel (0, 0) of the film */
   void add_to(draw::Pass &pass, const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,
               const gpu::Sampler &nearest) const;
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_engine.hh"
 #include "eevee_lamp_points.hh"
+#include "eevee_settings.hh"
+#include "eevee_shaders.hh"
+
+#include "draw_viewport.hh"
+#include "render_scene.hh"
 
 #include <functional>
 #include <optional>

@@ -65,8 +65,7 @@ class SceneLights {
   void bind(draw::ShadingGroup &group) const;
   /** Write the lights of \a sampled. Entries of `light_block` are written by \a list. */
   void write_points(const SampledLampPoints &sampled, gpu::Device &device, gpu::CommandList &list);
-  /** If they are clustered, append a write of \a light to its \a entry in `light_block`, with its point in \a sampled.
-   */
+  /** If lights are clustered, append a write of \a light, at its point in \a sampled, to \a entry of `light_block`. */
   void write_entry(const SampledLampPoints &sampled, int light, int entry, gpu::CommandList &list) const;
 
   void report(ResourceReport &report) const;

@@ -15,8 +15,7 @@ double filter_weight(double distance_px)
   return 0.35875 + 0.48829 * std::cos(a) + 0.14128 * std::cos(2.0 * a) + 0.01168 * std::cos(3.0 * a);
 }
 
-/** The van der Corput sequence in base 2: the binary digits of \a index, reversed behind the binary point. In [0, 1).
- */
+/** The van der Corput sequence in base 2: the binary digits of \a index, reversed behind the point. In [0, 1). */
 static double radical_inverse(std::uint32_t index)
 {
   double inverse = 0.0;

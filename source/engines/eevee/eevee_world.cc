@@ -36,6 +36,13 @@ std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world
   return lamps;
 }
 
+bool has_background(const Settings &settings, const render_scene::RenderScene &scene)
+{
+  return settings.light.has(LightPart::Kind::World) &&
+         (settings.background.kind == Background::Kind::Color ||
+          (settings.background.kind == Background::Kind::World && scene.scene().world()));
+}
+
 void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings)
 {
   const Key key{scene.world_revision(), settings.planned_sample_count(), !settings.light.has(LightPart::Kind::World)};

@@ -7,7 +7,7 @@
 #include "eevee_world_shared.h"
 #include "render_scene.hh"
 
-/** Light of the scene's world. \see render_world.hh */
+/** Light of the scene's world, and the background of a picture. \see render_world.hh */
 namespace gnomon::eevee {
 
 struct ResourceReport;
@@ -23,6 +23,9 @@ inline constexpr double world_lobe_directions = 12.0;
  * also `world_direction_count` lamps for WorldLight::rest, to which LampPoints gives a new direction in each sample.
  */
 [[nodiscard]] std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading);
+
+/** Whether pixels without a surface show a background. */
+[[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
 
 /** The scene's world on the device. Internal to the engine. */
 class SceneWorld {

@@ -153,7 +153,10 @@ class OctahedralStore {
   /** Append the passes that draw the layer of the \a index-th lamp to \a list. \pre \a index is below size() */
   void record(gpu::CommandList &list, std::size_t index, const EsmCube &cube);
 
-  /** Bind `esm_block`, `shadow_esm`, `shadow_esm_half` and `shadow_evsm` by value. \pre size() is above 0 */
+  /**
+   * Bind `esm_block` by value, and `shadow_esm`, `shadow_esm_half` and `shadow_evsm` by reference: the store must
+   * outlive \a group. \pre size() is above 0
+   */
   void bind(draw::ShadingGroup &group) const;
 
   /** Whether at least one lamp has EsmMethod::Evsm. Lookups then need USE_SHADOW_EVSM. */
