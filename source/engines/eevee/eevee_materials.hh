@@ -6,6 +6,7 @@
 
 #include "render_materials.hh"
 
+#include <limits>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -15,8 +16,8 @@ struct DrawnMaterials {
   /** The class with the most inputs, and the features. */
   render_scene::MaterialClass widest_class = render_scene::MaterialClass::Plain;
   Feature features = Feature::None;
-  /** Least alpha of a specular lobe; 1 without one. */
-  float alpha_min = 1.0F;
+  /** Least alpha of a specular lobe; infinity without one. */
+  float alpha_min = std::numeric_limits<float>::infinity();
   /** At least one has a surface function. */
   bool has_functions = false;
   std::vector<TransmissiveObject> transmissive;
