@@ -13,7 +13,7 @@ const float ANISOTROPIC_ALPHA_PART = 0.433;
 
 /** A whole lamp as the lobes of a surface see it. */
 struct HighlightLamp {
-  /** In the order of LightData, for the centre of the lamp. */
+  /** The light, at the centre of the lamp. */
   LightData light;
   LightShape shape;
   CenterLight center;

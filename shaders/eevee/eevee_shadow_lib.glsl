@@ -22,12 +22,18 @@ struct ReceiverPlane {
   float least_depth;
 };
 
+/** Depths of the four texels at \a corner, in the order of textureGather. */
+vec4 stored_depths(sampler2DArray depths, int layer, vec2 corner)
+{
+  // Gather at the corner that the four texels share, so that rounding cannot select other texels.
+  return textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
+}
+
 /** Weighted sum of the lit ones of the four texels at \a corner. \a size_px: edge of the shadow within its layer. */
 float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 corner, vec2 columns, vec2 rows)
 {
   corner = clamp(corner, vec2(0.0), vec2(max(size_px - 2, 0)));
-  // Gather at the corner that the four texels share, so that rounding cannot select other texels.
-  vec4 stored = textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
+  vec4 stored = stored_depths(depths, layer, corner);
   vec4 depths_of_plane = plane_depths(plane.depth, plane.slope, corner - plane.texel);
   return weighted_texels(texels_lit(stored, max(depths_of_plane, vec4(plane.least_depth))), columns, rows);
 }
@@ -69,15 +75,14 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   vec2 last = vec2(max(size_px - 2, 0));
   vec2 corner = clamp(floor(plane.texel), vec2(0.0), last);
   vec2 fraction = plane.texel - floor(plane.texel);
-  vec2 scale = 1.0 / vec2(textureSize(depths, 0).xy);
-  vec4 stored = textureGather(depths, vec3((corner + 1.0) * scale, float(layer)));
+  vec4 stored = stored_depths(depths, layer, corner);
   vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
   vec4 lit = texels_lit(stored, receiver);
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
   // The direction towards the casters, and the four texels one further there.
   vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
   vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;
-  vec4 further = textureGather(depths, vec3((corner + moved + 1.0) * scale, float(layer)));
+  vec4 further = stored_depths(depths, layer, corner + moved);
   receiver = max(receiver, vec4(0.0));
   vec4 height = stored - receiver;
   further -= receiver + dot(moved, plane.slope);
@@ -287,8 +292,8 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
 }
 
 /** Visibility from one map. \a coverage: \see map_coverage. \a least_gap: \see shadow_cube_visibility. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, float least_gap,
-                         out float coverage, const bool is_receiver)
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, float least_gap, out float coverage,
+                         const bool is_receiver)
 {
   ShadowPlace place = map_place(map, surface, to_light, offset, coverage);
   if (place.is_covered && least_gap > 0.0) {
@@ -342,8 +347,7 @@ vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_ligh
 }
 
 /** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */
-float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset, float least_gap,
-                            const bool is_receiver)
+float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset, float least_gap, const bool is_receiver)
 {
   int count = shadow.maps[first].cascade_count;
   float visibility = 0.0;
