@@ -45,8 +45,7 @@ enum class Outside {
 
 constexpr unsigned room_pairs = unsigned(Joint::Count) * unsigned(Outside::Count);
 
-/** A room with light outside, drawn by the number. Each joint meets each light in any `room_pairs` successive numbers.
- */
+/** A random room with light outside. Each joint meets each light in any `room_pairs` successive numbers. */
 struct Room {
   explicit Room(unsigned number) : random(number), joint(Joint(number % unsigned(Joint::Count)))
   {
@@ -248,7 +247,7 @@ constexpr glm::ivec2 picture_size_px(48, 32);
 
 class ClosedRoomsGpuTest : public test::GpuDeviceTest {
  protected:
-  /** Draws the rooms from  first to  end - 1.  layer_px: size of maps and faces; 0: as `gnomon render`. */
+  /** Draws the rooms from \a first to \a end - 1. \a layer_px: size of maps and faces; 0: as `gnomon render`. */
   Leaks leaks_of(unsigned first, unsigned end, int layer_px) const
   {
     Leaks leaks;
