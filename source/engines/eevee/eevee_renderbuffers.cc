@@ -36,7 +36,7 @@ void RenderBuffers::resized()
 
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 {
-  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
+  return 2.0F / (std::abs(view.clip_from_view()[1][1]) * float(viewport.drawn_size_px().y));
 }
 
 draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
