@@ -175,7 +175,8 @@ TEST_F(DistantMaskGpuTest, CoversItsShareAtAnyNumberOfSamples)
     }
     for (const int sample_count : {1, 4, 16}) {
       const glm::vec4 color = mean(sample_count);
-      EXPECT_NEAR(color.a, 0.75F, sample_count == 1 ? 0.01F : 0.005F) << sample_count << is_full;
+      // Independent samples of 1024 pixels would have standard deviations of 0.0135, 0.0068 and 0.0034.
+      EXPECT_NEAR(color.a, 0.75F, 0.01F) << sample_count << is_full;
       if (!is_full) {
         EXPECT_NEAR(color.g / color.a, decoded(200), 2e-3F) << sample_count;
         EXPECT_LT(color.r, 1e-3F * color.a) << sample_count;
