@@ -276,6 +276,12 @@ void Pass::clear()
   order_.reset();
 }
 
+static gpu::State with_other_front(gpu::State state)
+{
+  return has(state, gpu::State::FrontClockwise) ? without(state, gpu::State::FrontClockwise)
+                                                : state | gpu::State::FrontClockwise;
+}
+
 RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, const VisibleObjects &visible,
                                 gpu::CommandList &list, gpu::State without) const
 {
@@ -292,7 +298,8 @@ RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, con
     return counts;
   }
   list.set_shader(group.shader_.id());
-  list.set_state(gpu::without(state_ | group.state_, without));
+  const gpu::State state = gpu::without(state_ | group.state_, without);
+  list.set_state(view.is_mirrored() ? with_other_front(state) : state);
   group.record_bindings(list);
   GNOMON_ASSERT(drawn_calls == 0 || !objects_ || objects_->buffer(), "pass '{}': its objects are not uploaded", name_);
   ShadingGroup::record_draws(first_call, first_instanced, group.object_buffer(), list);

@@ -166,9 +166,10 @@ class RenderScene {
     return meshes_.get(device_, scene_.meshes(), mesh, streams);
   }
   /** \see Images::get */
-  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use)
+  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use,
+                                       float mask_cutoff = 0.0F)
   {
-    return images_.get(device_, scene_, texture, use);
+    return images_.get(device_, scene_, texture, use, mask_cutoff);
   }
   [[nodiscard]] const Meshes &meshes() const
   {

@@ -29,6 +29,7 @@ constexpr auto view_fields = std::to_array<Field>({
     {"view.depth_origin_ws", offsetof(ViewData, depth_origin_ws)},
     {"view.depth_origin", offsetof(ViewData, depth_origin)},
     {"view.place_middle", offsetof(ViewData, place_middle)},
+    {"view.mask_shift", offsetof(ViewData, mask_shift)},
     {"view.place_right", offsetof(ViewData, place_right)},
     {"view.place_up", offsetof(ViewData, place_up)},
 });

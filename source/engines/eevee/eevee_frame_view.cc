@@ -4,6 +4,7 @@
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
 #include "eevee_frame.hh"
+#include "eevee_sequence_shared.h"
 
 #include <glm/matrix.hpp>
 
@@ -33,7 +34,7 @@ std::string_view why_no_shadow(const FrameState &state, std::string_view no_such
 
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 {
-  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
+  return 2.0F / (std::abs(view.clip_from_view()[1][1]) * float(viewport.drawn_size_px().y));
 }
 
 draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
@@ -65,7 +66,7 @@ static void set_places(shared::ViewData &data, const draw::View &view, const glm
   const glm::dvec2 offset = view.is_perspective() ? glm::dvec2(projection[2]) : -glm::dvec2(projection[3]);
   const glm::dvec3 right = glm::dvec3(world_from_view[0]) * scale.x;
   const glm::dvec3 up = glm::dvec3(world_from_view[1]) * scale.y;
-  data.place_middle = glm::vec4(glm::vec3(right * offset.x + up * offset.y), 0.0F);
+  data.place_middle = glm::vec3(right * offset.x + up * offset.y);
   data.place_right = glm::vec4(glm::vec3(right), 0.0F);
   data.place_up = glm::vec4(glm::vec3(up), 0.0F);
 }
@@ -83,6 +84,7 @@ shared::ViewData view_data(const draw::View &view, const Settings &settings, int
   // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
   // apart.
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
+  data.mask_shift = shared::to_unit(shared::scrambled_van_der_corput(std::uint32_t(sample_index), settings.seed));
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
 }

@@ -177,11 +177,12 @@ FrameNode texture_nodes(const ReportSource &source)
   for (const auto &[handle, image] : source.scene().images()) {
     using scene::ImageUse;
     const auto is_read_as = [&, image_handle = handle](ImageUse use) { return read.contains({image_handle, use}); };
-    for (const ImageUse use : {ImageUse::Color, ImageUse::Coverage, ImageUse::Data}) {
+    for (const ImageUse use : {ImageUse::Color, ImageUse::Coverage, ImageUse::Mask, ImageUse::Data}) {
       const gpu::Texture *made = source.render_scene.images().find(handle, use);
       const bool is_read = is_read_as(use);
-      // An image without a reader gets one node instead of three.
-      const bool is_first = use == ImageUse::Color && !is_read_as(ImageUse::Coverage) && !is_read_as(ImageUse::Data);
+      // An image without a reader gets one node instead of four.
+      const bool is_first = use == ImageUse::Color && !is_read_as(ImageUse::Coverage) && !is_read_as(ImageUse::Mask) &&
+                            !is_read_as(ImageUse::Data);
       if (!made && !is_read && !is_first) {
         continue;
       }

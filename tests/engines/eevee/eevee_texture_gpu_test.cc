@@ -128,6 +128,41 @@ TEST_F(TextureGpuTest, MaskCutsTheSurfaceAndItsShadow)
   }
 }
 
+TEST_F(TextureGpuTest, ADistantMaskCoversItsShareAtAnyNumberOfSamples)
+{
+  // Three texels in four are left, with little alpha; the others are red.
+  Bytes texels;
+  for (int i = 0; i < 256 * 256; i++) {
+    const Bytes texel = (i + i / 256) % 4 == 3 ? Bytes{255, 0, 0, 70} : Bytes{0, 200, 0, 90};
+    texels.insert(texels.end(), texel.begin(), texel.end());
+  }
+  const auto leaf = add_textured(256, texels);
+  scene.edit(scene.textures().first(), [](scene::Texture &texture) {
+    texture.magnified = texture.minified = scene::TextureFilter::Linear;
+    texture.mip = scene::MipFilter::Linear;
+  });
+  test::edit_material(scene, 0, [](scene::Material &material) {
+    material.alpha_cutoff = 0.3F;
+    material.is_unlit = true;
+  });
+  add(leaf, {0, 0, 0});
+  for (const int sample_count : {1, 4, 16}) {
+    const Picture picture = render({.sample_count = sample_count});
+    glm::vec4 sum(0.0F);
+    int pixel_count = 0;
+    // Within its edges.
+    for (int y = 16; y < 48; y++) {
+      for (int x = 16; x < 48; x++) {
+        sum += picture.at(x, y);
+        pixel_count++;
+      }
+    }
+    EXPECT_NEAR(sum.a / float(pixel_count), 0.75F, sample_count == 1 ? 0.01F : 0.005F) << sample_count;
+    EXPECT_NEAR(sum.g / sum.a, decoded(200), 2e-3F) << sample_count;
+    EXPECT_LT(sum.r, 1e-3F * sum.a) << sample_count;
+  }
+}
+
 TEST_F(TextureGpuTest, CutOutSurfacesChangeNoPixel)
 {
   const auto ground = add_plain({0.5F, 0.25F, 0.75F});
