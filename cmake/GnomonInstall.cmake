@@ -27,8 +27,8 @@ install(FILES ${PROJECT_BINARY_DIR}/gnomon-config.cmake ${PROJECT_BINARY_DIR}/gn
   ${CMAKE_CURRENT_LIST_DIR}/GnomonLibraryDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/GnomonShaders.cmake DESTINATION ${PACKAGE_FOLDER})
 
 # A static library is of no use without what it is linked with. A shared one knows it.
-set(PC_REQUIRES "epoxy egl libxxhash glfw3 spng libturbojpeg libwebp simdjson draco")
-set(PC_LIBS "-lmeshoptimizer")
+set(PC_REQUIRES "epoxy egl libxxhash glfw3 spng libturbojpeg libwebp simdjson")
+set(PC_LIBS "-lmeshoptimizer -ldraco")
 if(BUILD_SHARED_LIBS)
   set(PC_REQUIRES "")
   set(PC_LIBS "")

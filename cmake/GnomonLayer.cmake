@@ -28,7 +28,8 @@ function(gnomon_compile_settings TARGET)
     target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
   endif()
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-    -Wnon-virtual-dtor -Woverloaded-virtual $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
+    -Wnon-virtual-dtor -Woverloaded-virtual $<$<CXX_COMPILER_ID:Clang>:-Wno-keyword-macro -Wno-overlength-strings>
+    $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
   if(GNOMON_SANITIZE)
     if(NOT "TEST" IN_LIST ARGN OR GNOMON_SANITIZE STREQUAL "thread")
       target_compile_options(${TARGET} PRIVATE -fsanitize=${GNOMON_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

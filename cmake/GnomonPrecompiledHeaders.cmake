@@ -20,7 +20,7 @@ function(gnomon_reuse_pch TARGET PCH_TARGET)
   if(GNOMON_PCH)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
     # Other builds warn of these in a file alone.
-    target_compile_options(${TARGET} PRIVATE -Wno-shadow -Wno-subobject-linkage)
+    target_compile_options(${TARGET} PRIVATE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     # For targets that do not link the library, too.
     target_compile_definitions(${TARGET} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
     target_precompile_headers(${TARGET} REUSE_FROM ${PCH_TARGET})

@@ -1,6 +1,10 @@
-# Writes the header OUTPUT with the current commit of FOLDER, if the commit has changed.
-execute_process(COMMAND git describe --always --dirty --abbrev=7 --exclude=* WORKING_DIRECTORY ${FOLDER}
-  OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+# Writes the header OUTPUT with the commit of the sources in FOLDER, if it has changed: that of the archive they come from, or the current one.
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/commit.txt COMMIT)
+if(COMMIT MATCHES Format)
+  set(COMMIT "")
+  execute_process(COMMAND git describe --always --dirty --abbrev=7 --exclude=* WORKING_DIRECTORY ${FOLDER}
+    OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
 if(NOT COMMIT)
   set(COMMIT "no commit")
 endif()

@@ -127,8 +127,9 @@ class Cache {
  private:
   fs::path path_of(const ShaderJob &job) const
   {
-    // Another checker may find other mistakes.
-    return folder_ / hash_of(GNOMON_SHADER_CHECKER + job.key);
+    // Another checker may find other mistakes, as may one with other rules.
+    const std::size_t left_out_count = shader_check::left_out_rules(shader_check::CheckTarget::OpenGl).size();
+    return folder_ / hash_of(fmt::format("{}{}\n{}", GNOMON_SHADER_CHECKER, left_out_count, job.key));
   }
   static std::optional<std::string> read(const fs::path &path)
   {

@@ -95,6 +95,28 @@ bool ShaderReport::has_errors() const
                              [](const auto &message) { return message.severity == shader_check::Severity::Error; });
 }
 
+namespace {
+
+/** The rules that this build does not check, by target. */
+std::vector<std::pair<std::string_view, std::vector<std::string_view>>> left_out(const ShaderReport &report)
+{
+  std::vector<std::pair<std::string_view, std::vector<std::string_view>>> result;
+  for (const shader_check::CheckTarget target : report.targets) {
+    if (std::vector<std::string_view> rules = shader_check::left_out_rules(target); !rules.empty()) {
+      result.emplace_back(to_string(target), std::move(rules));
+    }
+  }
+  return result;
+}
+
+std::string left_out_text(std::string_view target, const std::vector<std::string_view> &rules)
+{
+  return fmt::format("not checked for {}, because this build has no syntax tree of glslang: {}", target,
+                     fmt::join(rules, ", "));
+}
+
+}  // namespace
+
 std::string to_text(const ShaderReport &report)
 {
   const std::vector<Group> groups = groups_of(report);
@@ -118,6 +140,9 @@ std::string to_text(const ShaderReport &report)
       text += fmt::format("{}: from the files of {} programs; {}: {}\n", target.text,
                           std::ranges::count_if(report.choices, is_chosen), first->program, first->reason);
     }
+  }
+  for (const auto &[target, rules] : left_out(report)) {
+    text += left_out_text(target, rules) + "\n";
   }
   return text;
 }
@@ -144,12 +169,17 @@ std::string to_json(const ShaderReport &report)
   for (const ShaderReport::Choice &choice : report.choices) {
     choices.push_back({{"program", choice.program}, {"target", to_string(choice.target)}, {"reason", choice.reason}});
   }
+  json not_checked = json::array();
+  for (const auto &[target, rules] : left_out(report)) {
+    not_checked.push_back({{"target", target}, {"rules", rules}});
+  }
   return dump({{"programs", report.program_count},
                {"variants", report.variant_count},
                {"errors", count(groups, shader_check::Severity::Error)},
                {"warnings", count(groups, shader_check::Severity::Warning)},
                {"seconds", report.seconds},
                {"targets", std::move(choices)},
+               {"not_checked", std::move(not_checked)},
                {"messages", std::move(messages)}});
 }
 
@@ -173,10 +203,17 @@ std::string to_sarif(const ShaderReport &report)
                        {"message", {{"text", fmt::format("{} ({})", m.text, where(group))}}},
                        {"locations", json::array({location})}});
   }
+  json notes = json::array();
+  for (const auto &[target, names] : left_out(report)) {
+    notes.push_back({{"level", "note"}, {"message", {{"text", left_out_text(target, names)}}}});
+  }
+  const json invocation = {{"executionSuccessful", true}, {"toolExecutionNotifications", std::move(notes)}};
   const json driver = {{"name", "gnomon shaders check"}, {"version", GNOMON_VERSION}, {"rules", std::move(rules)}};
   return dump({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
                {"version", "2.1.0"},
-               {"runs", json::array({json{{"tool", {{"driver", driver}}}, {"results", std::move(results)}}})}});
+               {"runs", json::array({json{{"tool", {{"driver", driver}}},
+                                          {"invocations", json::array({invocation})},
+                                          {"results", std::move(results)}}})}});
 }
 
 }  // namespace gnomon::cli

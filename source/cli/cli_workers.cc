@@ -60,7 +60,7 @@ bool send_all(int socket, const void *data, std::size_t size)
     dup2(nowhere, STDOUT_FILENO);
     close(nowhere);
   }
-#ifndef __SANITIZE_ADDRESS__
+#ifndef GNOMON_ADDRESS_SANITIZER
   const rlimit memory{limits.memory_bytes, limits.memory_bytes};
   setrlimit(RLIMIT_DATA, &memory);
 #endif

@@ -172,6 +172,12 @@ class Device {
   void read_back(const Texture &texture, int layer, std::uint64_t tag);
   /** Wait until all submitted work is done. Device's thread. */
   virtual void finish() = 0;
+  /**
+   * Give back the memory that destroyed resources have left: what the driver still refers to, and free pages of the
+   * process. Takes some milliseconds and waits for the device. Call it after the resources of a scene were destroyed;
+   * SceneRenderer does. Does nothing during a recording, and where the backend cannot be called.
+   */
+  void trim() noexcept;
 
   /** Set the begin mark and the end mark of \a query, between submissions. Queries must not overlap. Does not wait. */
   void time_begin(const TimerQuery &query);
@@ -280,6 +286,11 @@ class Device {
   virtual void timer_query_create(ResourceId id, const std::string &name) = 0;
   /** Never called for batches that are ranges of the shared buffers. */
   virtual void resource_destroy(ResourceKind kind, ResourceId id) = 0;
+  /** The backend's part of trim(). \return false: there was nothing of a notable size to give back */
+  virtual bool driver_trim()
+  {
+    return false;
+  }
   virtual void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) = 0;
   virtual void texture_upload(ResourceId id, int layer, std::span<const std::byte> texels) = 0;
   virtual void mipmaps_generate(ResourceId id) = 0;

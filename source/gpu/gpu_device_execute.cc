@@ -2,6 +2,10 @@
 // The functions of Device that run on the device's thread.
 #include "gpu_device.hh"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace gnomon::gpu {
 
 void Device::submit(Packet &packet)
@@ -31,6 +35,24 @@ void Device::submit(Packet &packet)
   }
   executed_serial_ = packet.serial_;
   done_serial_ = packet.serial_;
+}
+
+void Device::trim() noexcept
+{
+  if (recording_ || std::this_thread::get_id() != thread_ || !can_execute()) {
+    return;
+  }
+  const Calls calls(*this);
+  try {
+    if (driver_trim()) {
+#ifdef __GLIBC__
+      malloc_trim(0);
+#endif
+    }
+  }
+  catch (const Error &) {
+    // A lost device has nothing to give back. The next call that draws reports it.
+  }
 }
 
 void Device::execute_recorded(Packet &packet)

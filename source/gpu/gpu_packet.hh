@@ -82,6 +82,9 @@ template <typename... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
+// Clang before version 17 deduces none for aggregates.
+template <typename... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
 
 /** A recorded call of a Device. It names resources by id. Its spans refer to data of the caller or of the packet. */
 struct Operation {

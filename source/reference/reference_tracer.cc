@@ -28,6 +28,42 @@ Tracer::Tracer(const scene::Scene &scene) : tree_(std::make_unique<Tree>(scene))
 
 Tracer::~Tracer() = default;
 
+namespace {
+
+#if GNOMON_EMBREE >= 4
+void trace(RTCScene scene, QueryContext &query, RTCRayHit &ray)
+{
+  rtcInitRayQueryContext(&query);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &query;
+  rtcIntersect1(scene, &ray, &arguments);
+}
+
+void trace_occluded(RTCScene scene, QueryContext &query, RTCRay &ray)
+{
+  rtcInitRayQueryContext(&query);
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &query;
+  rtcOccluded1(scene, &ray, &arguments);
+}
+#else
+void trace(RTCScene scene, QueryContext &query, RTCRayHit &ray)
+{
+  rtcInitIntersectContext(&query);
+  rtcIntersect1(scene, &query, &ray);
+}
+
+void trace_occluded(RTCScene scene, QueryContext &query, RTCRay &ray)
+{
+  rtcInitIntersectContext(&query);
+  rtcOccluded1(scene, &query, &ray);
+}
+#endif
+
+}  // namespace
+
 std::optional<Hit> Tracer::closest(const Ray &ray, Faces faces) const
 {
   const std::optional<Tree::Clipped> clipped = tree_->clipped(ray);
@@ -35,11 +71,10 @@ std::optional<Hit> Tracer::closest(const Ray &ray, Faces faces) const
     return std::nullopt;
   }
   ClosestQuery query{{}, {ray.origin_ws, ray.direction_ws}, ray, faces, clipped->t_enter, clipped->length, {}};
-  rtcInitIntersectContext(&query);
   RTCRayHit hit{};
   hit.ray = clipped->ray;
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(tree_->tree, &query, &hit);
+  trace(tree_->tree, query, hit);
   return query.best;
 }
 
@@ -52,9 +87,8 @@ double Tracer::transmission(const glm::dvec3 &point_ws, double error_m, const Li
     return 1.0;
   }
   BlockedQuery query{{}, {point_ws, direction}, point_ws, error_m, light};
-  rtcInitIntersectContext(&query);
   RTCRay occluded = clipped->ray;
-  rtcOccluded1(tree_->tree, &query, &occluded);
+  trace_occluded(tree_->tree, query, occluded);
   return query.transmission;
 }
 

@@ -5,10 +5,8 @@
 #include "internal/shader_check_block.hh"
 #include "internal/shader_check_dialect.hh"
 #include "internal/shader_check_log.hh"
-#include "internal/shader_check_tree.hh"
 #include "shared_types.h"
 
-#include <glslang/SPIRV/GlslangToSpv.h>
 #include <spirv-tools/libspirv.hpp>
 
 #include <algorithm>
@@ -47,11 +45,6 @@ constexpr std::array<StageName, 14> stages = {{
     {Stage::Miss, "rmiss", "miss"},
     {Stage::Callable, "rcall", "callable"},
 }};
-
-bool has_spirv(CheckTarget target)
-{
-  return target == CheckTarget::OpenGlSpirv || is_vulkan(target);
-}
 
 spv_target_env environment_of(CheckTarget target)
 {
@@ -94,6 +87,11 @@ bool is_vulkan(CheckTarget target)
   return target >= CheckTarget::Vulkan10;
 }
 
+bool has_spirv(CheckTarget target)
+{
+  return target == CheckTarget::OpenGlSpirv || is_vulkan(target);
+}
+
 std::span<const StageName> stage_names()
 {
   return stages;
@@ -114,6 +112,8 @@ namespace {
 /** Above this size a uniform block is an error, although some devices support more. */
 constexpr int uniform_block_bytes_limit = 65536;
 
+using Reads = CheckRule::Reads;
+
 constexpr std::array<CheckRule, 19> rules = {{
     {"stage", "the name of a file, or an option, gives its stage"},
     {"include", "included files and the files of stages exist"},
@@ -121,19 +121,19 @@ constexpr std::array<CheckRule, 19> rules = {{
     {"link", "glslang accepts the stages together"},
     {"limit", "the check of a program ends within its limits of time and memory"},
     {"spirv", "SPIRV-Tools accepts glslang's output for the stage", true},
-    {"slot", "each block and texture has a slot of its own, the same in each stage", true, true},
-    {"missing-varying", "each input of a stage is an output of the previous stage", true},
-    {"varying-type", "an input has the type of the previous stage's output", true},
+    {"slot", "each block and texture has a slot of its own, the same in each stage", true, true, Reads::Declarations},
+    {"missing-varying", "each input of a stage is an output of the previous stage", true, false, Reads::Declarations},
+    {"varying-type", "an input has the type of the previous stage's output", true, false, Reads::Declarations},
     {"block-match", "a block has the same members and slot in each stage", true},
-    {"layout", "a block has the same layout in C++ and GLSL", true, true},
-    {"block-array", "an array in a block has elements that fill rows of 16 bytes", true, true},
-    {"block-size", "a uniform block is within the limit that all devices support", true},
+    {"layout", "a block has the same layout in C++ and GLSL", true, true, Reads::Declarations},
+    {"block-array", "an array in a block has elements that fill rows of 16 bytes", true, true, Reads::Declarations},
+    {"block-size", "a uniform block is within the limit that all devices support", true, false, Reads::Declarations},
     {"recursion", "no function calls itself"},
-    {"unused-binding", "each declared block or texture is read", true},
-    {"unread-output", "an output is read by the next stage", true},
-    {"implicit-conversion", "a member of a block is converted only explicitly", true},
-    {"unbounded-loop", "a value that the loop steps bounds the loop", true},
-    {"unguarded-math", "the argument of a function with a limited domain is guarded", true},
+    {"unused-binding", "each declared block or texture is read", true, false, Reads::Declarations},
+    {"unread-output", "an output is read by the next stage", true, false, Reads::Declarations},
+    {"implicit-conversion", "a member of a block is converted only explicitly", true, false, Reads::Functions},
+    {"unbounded-loop", "a value that the loop steps bounds the loop", true, false, Reads::Functions},
+    {"unguarded-math", "the argument of a function with a limited domain is guarded", true, false, Reads::Functions},
 }};
 
 /** The settings of a Checker. */
@@ -269,7 +269,7 @@ class Checker {
   {
     bool is_linked = c_.glslang.link();
     const std::string log(c_.glslang.log());
-    c_.read_facts();
+    c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
     check_findings();
     check_slots();
     check_varyings();
@@ -283,7 +283,8 @@ class Checker {
       for (const LinkMessage &message : link_messages(log)) {
         if (message.severity == Severity::Error) {
           const auto [stage, position] = place_of(message.text);
-          add(Severity::Error, "link", stage, position, message.text);
+          const bool is_recursion = message.text.find("Recursion detected") != std::string::npos;
+          add(Severity::Error, is_recursion ? "recursion" : "link", stage, position, message.text);
         }
       }
       if (!has_errors()) {
@@ -306,11 +307,14 @@ class Checker {
    */
   bool may_differ(const std::vector<LinkMessage> &errors) const
   {
-    return is_vulkan(options_.target) && !settings_.is_own &&
-           std::ranges::all_of(errors, [](const LinkMessage &message) {
-             const std::string_view head = std::string_view(message.text).substr(0, message.text.find(':'));
-             return message.severity == Severity::Warning || find_word(head, "stages") != std::string_view::npos;
-           });
+    return is_vulkan(options_.target) && !settings_.is_own && is_difference_between_stages(errors);
+  }
+  static bool is_difference_between_stages(const std::vector<LinkMessage> &messages)
+  {
+    return std::ranges::all_of(messages, [](const LinkMessage &message) {
+      const std::string_view head = std::string_view(message.text).substr(0, message.text.find(':'));
+      return message.severity == Severity::Warning || find_word(head, "stages") != std::string_view::npos;
+    });
   }
   void add_block_differences(const std::vector<LinkMessage> &errors)
   {
@@ -443,10 +447,9 @@ class Checker {
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3. */
   bool is_part(const Declaration &output, const Declaration &input) const
   {
-    return options_.target == CheckTarget::Vulkan13 && output.type->isVector() && !output.type->isArray() &&
-           !input.type->isArray() && !input.type->isMatrix() &&
-           output.type->getBasicType() == input.type->getBasicType() &&
-           input.type->getVectorSize() < output.type->getVectorSize();
+    return options_.target == CheckTarget::Vulkan13 && output.type.array_sizes.empty() &&
+           input.type.array_sizes.empty() && input.type.row_count == 0 && output.type.scalar == input.type.scalar &&
+           input.type.vector_size < output.type.vector_size;
   }
 
   static std::string named(const Declaration &varying)
@@ -472,10 +475,10 @@ class Checker {
           }
           continue;
         }
-        const std::string written = type_name(*output->type, output->is_arrayed);
-        const std::string read = type_name(*input.type, input.is_arrayed);
+        const std::string written = type_name(output->type, output->is_arrayed);
+        const std::string read = type_name(input.type, input.is_arrayed);
         if (output->location == input.location && output->component == input.component && written != read &&
-            !input.type->isStruct() && !is_part(*output, input)) {
+            !input.type.is_struct && !is_part(*output, input)) {
           add(Severity::Error, "varying-type", i, input.position,
               fmt::format("input {} is {}, and the {} stage writes {}", named(input), read, before, written));
         }
@@ -551,7 +554,7 @@ class Checker {
   void check_block_size(std::size_t stage, const Declaration &block)
   {
     // A block ends at the end of its last member's row of 16 bytes.
-    const int bytes = (glslang::TIntermediate::getBlockSize(*block.type) + 15) / 16 * 16;
+    const int bytes = int((block.size_bytes + 15) / 16 * 16);
     if (bytes <= UNIFORM_BLOCK_BYTES_MAX) {
       return;
     }
@@ -564,11 +567,9 @@ class Checker {
   void make_spirv()
   {
     for (std::size_t i = 0; i < c_.sources.size(); i++) {
-      std::vector<std::uint32_t> words;
-      spv::SpvBuildLogger logger;
-      glslang::GlslangToSpv(*c_.tree(i), words, &logger);
-      validate(i, words, logger.getAllMessages());
-      spirv_.emplace_back(c_.sources[i]->stage(), std::move(words));
+      const Spirv &spirv = c_.spirv(i);
+      validate(i, spirv.words, spirv.log);
+      spirv_.emplace_back(c_.sources[i]->stage(), spirv.words);
     }
   }
 
@@ -633,6 +634,19 @@ class Checker {
 std::span<const CheckRule> check_rules()
 {
   return rules;
+}
+
+std::vector<std::string_view> left_out_rules([[maybe_unused]] CheckTarget target)
+{
+  std::vector<std::string_view> names;
+#if !GNOMON_GLSLANG_TREE
+  for (const CheckRule &rule : rules) {
+    if (rule.reads == Reads::Functions || (rule.reads == Reads::Declarations && !has_spirv(target))) {
+      names.push_back(rule.name);
+    }
+  }
+#endif
+  return names;
 }
 
 std::span<const std::string_view> device_features()

@@ -36,6 +36,8 @@ struct TargetName {
 /** TargetName::text. */
 [[nodiscard]] std::string_view to_string(CheckTarget target);
 [[nodiscard]] bool is_vulkan(CheckTarget target);
+/** Whether shaders for \a target become SPIR-V. */
+[[nodiscard]] bool has_spirv(CheckTarget target);
 
 /** In the order in which a device runs them. */
 enum class Stage : std::uint8_t {
@@ -82,10 +84,19 @@ struct CheckRule {
   bool is_optional = false;
   /** Whether only Gnomon's own shaders need it: for others it is off until its level is set. */
   bool is_own = false;
+  enum class Reads : std::uint8_t { Compiler, Declarations, Functions };
+  /** What finds the mistakes: messages of compilers, or what a check reads itself. */
+  Reads reads = Reads::Compiler;
 };
 
 /** All rules. doc/shader-rules.md has an example of each. */
 [[nodiscard]] std::span<const CheckRule> check_rules();
+
+/**
+ * The names of rules that this build cannot check for \a target, because it was made without the headers of glslang's
+ * syntax tree, which glslang installs before version 14 only. Without them, declarations are read from SPIR-V.
+ */
+[[nodiscard]] std::vector<std::string_view> left_out_rules(CheckTarget target);
 
 enum class RuleLevel : std::uint8_t { Off, Warning, Error };
 

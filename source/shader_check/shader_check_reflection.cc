@@ -3,7 +3,6 @@
 
 #include "internal/shader_check_compilation.hh"
 #include "internal/shader_check_log.hh"
-#include "internal/shader_check_tree.hh"
 #include "slots_shared.h"
 
 #include <algorithm>
@@ -65,38 +64,25 @@ std::uint32_t stages_of(const glslang::TObjectReflection &object)
          ((object.stages & EShLangFragmentMask) != 0 ? 1U << unsigned(ShaderStage::Fragment) : 0U);
 }
 
-/** ShaderInterface::reads_object of a program whose first stage is the vertex stage. */
-bool reads_object(const glslang::TProgram &program)
+/** Sets ShaderInterface::reads_object and varying_locations. */
+void set_varyings(const Compilation &compilation, gpu::ShaderInterface &interface)
 {
-  for (int i = 0; i < program.getNumPipeInputs(); i++) {
-    const glslang::TQualifier &input = program.getPipeInput(i).getType()->getQualifier();
-    if (input.hasLocation() && input.layoutLocation >= ATTRIBUTE_WORLD_FROM_OBJECT &&
-        input.layoutLocation <= ATTRIBUTE_OBJECT_VALUE) {
-      return true;
+  for (std::size_t i = 0; i < compilation.facts.size(); i++) {
+    const StageFacts &facts = compilation.facts[i];
+    if (i == 0) {
+      interface.reads_object = std::ranges::any_of(facts.inputs, [](const Declaration &input) {
+        return input.is_used && input.location >= ATTRIBUTE_WORLD_FROM_OBJECT &&
+               input.location <= ATTRIBUTE_OBJECT_VALUE;
+      });
     }
-  }
-  return false;
-}
-
-/** ShaderInterface::varying_locations. */
-int varying_locations(const glslang::TProgram &program)
-{
-  int count = 0;
-  for (const EShLanguage stage : {EShLangVertex, EShLangGeometry}) {
-    const glslang::TIntermediate *intermediate = program.getIntermediate(stage);
-    if (intermediate == nullptr || intermediate->getTreeRoot() == nullptr) {
-      continue;
-    }
-    for (const TIntermNode *node : intermediate->findLinkerObjects()->getSequence()) {
-      const glslang::TIntermSymbol *symbol = root_symbol(node);
-      const glslang::TQualifier *output = symbol ? &symbol->getQualifier() : nullptr;
-      if (output && output->isPipeOutput() && output->hasLocation()) {
-        const int size = glslang::TIntermediate::computeTypeLocationSize(symbol->getType(), stage);
-        count = std::max(count, int(output->layoutLocation) + size);
+    if (compilation.sources[i]->stage() != Stage::Fragment) {
+      for (const Declaration &output : facts.outputs) {
+        if (output.location >= 0) {
+          interface.varying_locations = std::max(interface.varying_locations, output.location + output.location_count);
+        }
       }
     }
   }
-  return count;
 }
 
 }  // namespace
@@ -106,8 +92,6 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
   program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables |
                           EShReflectionStrictArraySuffix);
   gpu::ShaderInterface interface;
-  interface.reads_object = reads_object(program);
-  interface.varying_locations = varying_locations(program);
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {
@@ -169,7 +153,7 @@ std::vector<StageVariable> variables(const std::vector<Declaration> &declaration
 {
   std::vector<StageVariable> variables;
   for (const Declaration &declaration : declarations) {
-    variables.push_back({declaration.name, type_name(*declaration.type, is_arrayed), declaration.location});
+    variables.push_back({declaration.name, type_name(declaration.type, is_arrayed), declaration.location});
   }
   std::ranges::stable_sort(variables, {}, &StageVariable::location);
   return variables;
@@ -181,19 +165,20 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
 {
   gpu::ShaderInterface interface;
   with_large_stack([&] {
-    // The program refers to the sources until it is destroyed.
-    std::vector<std::unique_ptr<StageSource>> sources;
-    GlslangProgram glslang;
+    Compilation compilation;
     for (const gpu::ShaderSource &stage : stages) {
-      if (!glslang.add(*sources.emplace_back(std::make_unique<StageSource>(stage)), CheckTarget::OpenGl)) {
+      // SPIR-V, because its declarations can be read without glslang's tree.
+      if (!compilation.add(std::make_unique<StageSource>(stage), CheckTarget::OpenGlSpirv, false)) {
         throw gpu::Error("shader '{}', {} stage:\n{}", name, to_string(stage.stage),
-                         bounded_lines(stage.name_files(glslang.log())));
+                         bounded_lines(stage.name_files(compilation.glslang.log())));
       }
     }
-    if (!glslang.link()) {
-      throw gpu::Error("shader '{}' does not link:\n{}", name, bounded_lines(glslang.log()));
+    if (!compilation.glslang.link()) {
+      throw gpu::Error("shader '{}' does not link:\n{}", name, bounded_lines(compilation.glslang.log()));
     }
-    interface = interface_of(glslang.program());
+    compilation.read_facts(true, false);
+    interface = interface_of(compilation.glslang.program());
+    set_varyings(compilation, interface);
   });
   check_slots(name, interface);
   return interface;

@@ -95,7 +95,7 @@ void add_placement_images(ImageCases &cases)
                "axis", "picture of the original scene"},
               1e-4, {0, 1, 2, 3, 4, 5}, [kind, against_itself](TestViewRenderer &renderer, double axis) {
                 const TestView test_view = table(kind);
-                const glm::dmat4 turned(glm::dmat3(glm::transpose(glm::mat3(eevee::cubefacemat[std::size_t(axis)]))));
+                const glm::dmat4 turned{glm::dmat3(glm::transpose(glm::mat3(eevee::cubefacemat[std::size_t(axis)])))};
                 return against_itself(renderer, placed(test_view, turned), test_view, false);
               });
     cases.add(

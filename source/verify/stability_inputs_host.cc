@@ -303,7 +303,7 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
   for (const auto &[name, shadow] : {std::pair("object matrices, hard shadows", scene::ShadowKind::Hard),
                                      {"object matrices, exponential shadows", scene::ShadowKind::Esm}}) {
     cases.push_back(input_case<int>("host", name, "frame of an object with this matrix", matrix_kinds, "node 'object1'",
-                                    matrix_inputs(4), [shadow](const int &kind) {
+                                    matrix_inputs(4), [shadow = shadow](const int &kind) {
                                       scene::Scene scene = lit_scene();
                                       scene.set_transform(scene.objects()[1].node, odd_matrix(kind));
                                       return draw_on_null(scene, small_settings(shadow));

@@ -120,11 +120,12 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
   for (const auto &[transform, name] :
        {std::pair(VIEW_TRANSFORM_STANDARD, "standard"), std::pair(VIEW_TRANSFORM_RAW, "raw")}) {
     for (const double sign : {-1.0, 1.0}) {
-      cases.push_back(case_of(
-          {picture_group, fmt::format("view {} of {} radiance", name, sign < 0.0 ? "negative" : "huge"),
-           "view_transformed", "displayed value", "radiance", log_steps(1e-38, 3e38, 153), [=](double radiance) {
-             return Arguments<float>{.a = glm::vec4(glm::vec3(float(sign * radiance)), float(transform))};
-           }}));
+      cases.push_back(
+          case_of({picture_group, fmt::format("view {} of {} radiance", name, sign < 0.0 ? "negative" : "huge"),
+                   "view_transformed", "displayed value", "radiance", log_steps(1e-38, 3e38, 153),
+                   [=, transform = transform](double radiance) {
+                     return Arguments<float>{.a = glm::vec4(glm::vec3(float(sign * radiance)), float(transform))};
+                   }}));
     }
   }
   // Properties instead of a closed form: values are in [0, 1], and with more light the largest channel does not fall by
@@ -141,7 +142,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                        .reference = "invariant",
                        .unit = violation_unit,
                        .bound = 0.0,
-                       .run = swept(log_steps(1e-38, 3e38, 153), [=](double radiance) {
+                       .run = swept(log_steps(1e-38, 3e38, 153), [=, transform = transform](double radiance) {
                          const auto shown = [&](double light) {
                            return shared::view_transformed(float(light) * tint, transform);
                          };

@@ -215,8 +215,12 @@ TEST(CheckShader, RecursionIsFoundThroughOtherFunctions)
                                "float a(float x) { return x > 1.0 ? b(x - 1.0) : x; }\n"
                                "void main() { color = vec4(a(3.0)); }\n";
   const std::vector<CheckMessage> messages = check_fragment(fragment);
-  ASSERT_EQ(messages.size(), 2U) << to_string(messages);
+  ASSERT_FALSE(messages.empty());
   EXPECT_EQ(messages[0].rule, "recursion");
+  if (!left_out_rules(CheckTarget::OpenGlSpirv).empty()) {
+    GTEST_SKIP() << "the lines of all functions need glslang's syntax tree, which this build has not";
+  }
+  ASSERT_EQ(messages.size(), 2U) << to_string(messages);
   EXPECT_EQ(messages[0].line, 3);
   EXPECT_EQ(messages[1].line, 4);
   expect_contains(messages[1].text, "'a'");
@@ -288,6 +292,9 @@ TEST(CheckShader, BlocksAreLaidOutAsInCpp)
 
 TEST(CheckShader, ImplicitConversionsOfBlockMembersAreReported)
 {
+  if (!left_out_rules(CheckTarget::OpenGlSpirv).empty()) {
+    GTEST_SKIP() << "the rule needs glslang's syntax tree, which this build has not";
+  }
   const auto use = [&](const std::string &expression) {
     return check_fragment(COLOR +
                           "layout(std140, binding = 1) uniform a_block { int count; } a;\n"
@@ -303,6 +310,9 @@ TEST(CheckShader, ImplicitConversionsOfBlockMembersAreReported)
 
 TEST(CheckShader, UnboundedLoopsAreReported)
 {
+  if (!left_out_rules(CheckTarget::OpenGlSpirv).empty()) {
+    GTEST_SKIP() << "the rule needs glslang's syntax tree, which this build has not";
+  }
   for (const char *loop :
        {"for (int i = 0; i < 4; i++) { color += x.xyzx; }", "for (int i = 3; i >= 0; i -= 1) { color += x.xyzx; }",
         "int n = 9; while (n > 0) { n = n >> 1; color += x.xyzx; }", "int n = 9; do { n--; } while (n > 0);",
@@ -322,6 +332,9 @@ TEST(CheckShader, UnboundedLoopsAreReported)
 
 TEST(CheckShader, UnguardedMathIsReported)
 {
+  if (!left_out_rules(CheckTarget::OpenGlSpirv).empty()) {
+    GTEST_SKIP() << "the rule needs glslang's syntax tree, which this build has not";
+  }
   for (const char *expression :
        {"color.x = acos(clamp(dot(x, y), -1.0, 1.0));", "color.x = sqrt(max(x.x - y.x, 0.0));", "color.x = sqrt(x.x);",
         "color.x = sqrt(dot(x, x));", "color.x = x.x / max(length(x), 1e-6);", "color.x = 1.0 / (x.x + 2.0);",

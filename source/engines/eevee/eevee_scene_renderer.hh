@@ -36,7 +36,11 @@ class SceneRenderer {
    * \throws gpu::Error if the device does not support pictures of \a size_px.
    */
   SceneRenderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const Settings &settings = {})
-      : render_scene_(device, scene), engine_(render_scene_, settings), viewport_(device, size_px), settings_(settings)
+      : trim_{device},
+        render_scene_(device, scene),
+        engine_(render_scene_, settings),
+        viewport_(device, size_px),
+        settings_(settings)
   {
   }
 
@@ -126,6 +130,15 @@ class SceneRenderer {
   /** Move the origin of the render scene near to \a camera, if it is far away. */
   void follow(const scene::PlacedCamera &camera);
 
+  /** Destroyed after the resources of the members below. */
+  struct Trim {
+    gpu::Device &device;
+    ~Trim()
+    {
+      device.trim();
+    }
+  };
+  Trim trim_;
   render_scene::RenderScene render_scene_;
   Engine engine_;
   draw::Viewport viewport_;

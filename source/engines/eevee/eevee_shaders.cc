@@ -113,7 +113,7 @@ std::shared_ptr<gpu::SharedShader> ShaderCache::make(gpu::Device &device, const 
     desc = with_surface_function(desc, declaration);
     text = fmt::format("{}\n{}", functions_.at(function).file, functions_.at(function).text);
   }
-  const auto fill = [&](gpu::SharedShader &made) {
+  const auto fill = [&, function = function](gpu::SharedShader &made) {
     made = function == 0 ? gpu::SharedShader{device.create_shader(desc, files_, reflection)}
                          : make_with(function, device, desc, reflection);
   };

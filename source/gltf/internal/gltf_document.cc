@@ -196,7 +196,7 @@ class DocumentReader {
                           read_members(at, extension, into("visible", node.is_visible));
                         }},
                  Member{"EXT_mesh_gpu_instancing", [&](const Place &at, const JsonValue &extension) {
-                          Model::Instances &instances = node.instances.emplace();
+                          Model::Instances &instances = node.instances.emplace(Model::Instances{});
                           read_members(
                               at, extension,
                               Member{"attributes", [&](const Place &in, const JsonValue &attributes) {
@@ -242,7 +242,7 @@ class DocumentReader {
     };
     const auto read_extension = [&](std::string_view name, const Place &at, const JsonValue &extension) {
       if (name == "KHR_draco_mesh_compression") {
-        read_draco(at, extension, primitive.draco.emplace());
+        read_draco(at, extension, primitive.draco.emplace(Model::Draco{}));
       }
       else if (name == "KHR_materials_variants") {
         read_members(at, extension, Member{"mappings", read_variants});

@@ -91,7 +91,7 @@ void read_accessor(const Place &place, const JsonValue &value, const DocumentInd
       Member{"count", [&](const Place &at, const JsonValue &member) { count = size_at(at, member); }},
       Member{"type", [&](const Place &at, const JsonValue &member) { type = element_type(at, member); }},
       Member{"sparse", [&](const Place &at, const JsonValue &member) {
-               read_sparse(at, member, indices, accessor.sparse.emplace());
+               read_sparse(at, member, indices, accessor.sparse.emplace(Model::Sparse{}));
              }});
   if (!component_type || !count || !type) {
     fail_incomplete(place, !type ? "type" : !count ? "count" : "componentType");
@@ -111,7 +111,7 @@ void read_buffer_view(const Place &place, const JsonValue &value, const Document
                Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
                         read_members(at, extensions,
                                      Member{"EXT_meshopt_compression", [&](const Place &in, const JsonValue &member) {
-                                              read_meshopt(in, member, indices, view.meshopt.emplace());
+                                              read_meshopt(in, member, indices, view.meshopt.emplace(Model::Meshopt{}));
                                             }});
                       }});
   if (view.buffer < 0 || !length) {

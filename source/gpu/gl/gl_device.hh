@@ -120,6 +120,7 @@ class GlDevice final : public Device {
   void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;
   void resource_destroy(ResourceKind kind, ResourceId id) override;
+  bool driver_trim() override;
   void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) override;
   void texture_upload(ResourceId id, int layer, std::span<const std::byte> texels) override;
   void mipmaps_generate(ResourceId id) override;
@@ -188,6 +189,8 @@ class GlDevice final : public Device {
   /** The objects in the context are not deleted, because it was not current when the device was destroyed. */
   bool is_abandoned_ = false;
   bool is_lost_ = false;
+  /** Of textures, since the last driver_trim(). */
+  std::size_t destroyed_bytes_ = 0;
   /** Bits of the GL_TIMESTAMP counter; 0: the driver has no timer. */
   GLint timestamp_bits_ = 0;
   /** \see unsaveable_state */

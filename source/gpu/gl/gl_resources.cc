@@ -349,7 +349,9 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
   const Calls calls(*this);
   switch (kind) {
     case ResourceKind::Texture:
-      if (textures_.at(id).desc.format != Format::Host) {
+      if (const TextureDesc &desc = textures_.at(id).desc; desc.format != Format::Host) {
+        destroyed_bytes_ += std::size_t(desc.width) * std::size_t(desc.height) * std::size_t(desc.layers) *
+                            std::size_t(texel_size_bytes(desc.format));
         glDeleteTextures(1, &textures_.at(id).name);
         glDeleteBuffers(1, &textures_.at(id).buffer);
       }
@@ -385,6 +387,41 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
     }
     case ResourceKind::Batch: host_batches_.erase(id); break;
   }
+}
+
+bool GlDevice::driver_trim()
+{
+  constexpr std::size_t notable_bytes = std::size_t(1) << 20U;
+  if (is_lost_ || destroyed_bytes_ < notable_bytes) {
+    return false;
+  }
+  destroyed_bytes_ = 0;
+  if (limits().is_software) {
+    // llvmpipe has a queue of up to 64 framebuffers to draw. An entry refers to its attachments and textures until it
+    // is used again, also after their deletion, and the driver takes the first one that is idle, so that later ones can
+    // keep hundreds of megabytes. So many clears follow each other faster than they are drawn, and reach all entries;
+    // twice, as on a busy machine they may not.
+    constexpr int queue_size = 64;
+    constexpr int size_px = 64;
+    GLuint renderbuffer = 0;
+    GLuint framebuffer = 0;
+    glCreateRenderbuffers(1, &renderbuffer);
+    glNamedRenderbufferStorage(renderbuffer, GL_R8, size_px, size_px);
+    glCreateFramebuffers(1, &framebuffer);
+    glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
+    const glm::vec4 black(0.0F);
+    for (int time = 0; time < 2; time++) {
+      glFinish();
+      for (int i = 0; i < queue_size; i++) {
+        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, &black.x);
+        glFlush();
+      }
+    }
+    glDeleteFramebuffers(1, &framebuffer);
+    glDeleteRenderbuffers(1, &renderbuffer);
+    glFinish();
+  }
+  return true;
 }
 
 void GlDevice::buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes)

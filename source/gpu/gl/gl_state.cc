@@ -260,12 +260,19 @@ void HostState::keep_draw_state()
   set_draw_defaults();
 }
 
+void HostState::keep_color_masks(GLuint count)
+{
+  for (auto i = GLuint(color_masks_.size()); is_host_ && i < count; i++) {
+    glGetBooleani_v(GL_COLOR_WRITEMASK, i, color_masks_.emplace_back().data());
+  }
+}
+
 void HostState::keep_color_buffers(GLuint count)
 {
+  keep_color_masks(count);
   for (auto i = GLuint(color_buffers_.size()); is_host_ && i < count; i++) {
     ColorBuffer &saved = color_buffers_.emplace_back();
     saved.is_blended = glIsEnabledi(GL_BLEND, i);
-    glGetBooleani_v(GL_COLOR_WRITEMASK, i, saved.mask.data());
     for (std::size_t j = 0; j < blend_functions.size(); j++) {
       glGetIntegeri_v(blend_functions[j], i, &saved.functions[j]);
     }
@@ -347,16 +354,20 @@ void HostState::restore()
     else {
       glDisablei(GL_BLEND, i);
     }
-    glColorMaski(i, saved.mask[0], saved.mask[1], saved.mask[2], saved.mask[3]);
     glBlendFuncSeparatei(i, GLenum(saved.functions[0]), GLenum(saved.functions[1]), GLenum(saved.functions[2]),
                          GLenum(saved.functions[3]));
     glBlendEquationSeparatei(i, GLenum(saved.equations[0]), GLenum(saved.equations[1]));
+  }
+  for (GLuint i = 0; i < color_masks_.size(); i++) {
+    const std::array<GLboolean, 4> &mask = color_masks_[i];
+    glColorMaski(i, mask[0], mask[1], mask[2], mask[3]);
   }
   if (draw_) {
     restore(*draw_);
   }
   pixel_stores_.clear();
   color_buffers_.clear();
+  color_masks_.clear();
   draw_.reset();
 }
 

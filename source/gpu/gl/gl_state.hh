@@ -50,6 +50,8 @@ class HostState {
   void keep_draw_state();
   /** Before changes of blending and colour masks of the draw buffers below \a count. */
   void keep_color_buffers(GLuint count);
+  /** Before changes of the colour masks alone. */
+  void keep_color_masks(GLuint count);
   /** Before a binding of an index of \a target: GL_UNIFORM_BUFFER or GL_SHADER_STORAGE_BUFFER. */
   void keep_indexed_buffer(GLenum target, GLuint slot);
   /** Before a binding of \a target without an index. */
@@ -85,7 +87,6 @@ class HostState {
   };
   struct ColorBuffer {
     GLboolean is_blended;
-    std::array<GLboolean, 4> mask;
     std::array<GLint, 4> functions;
     std::array<GLint, 2> equations;
   };
@@ -128,6 +129,7 @@ class HostState {
   std::vector<BoundTexture> textures_;
   std::vector<BoundSampler> samplers_;
   std::vector<ColorBuffer> color_buffers_;
+  std::vector<std::array<GLboolean, 4>> color_masks_;
   std::vector<PixelStore> pixel_stores_;
 };
 

@@ -264,8 +264,10 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
   if (actions.reads_attachments) {
     glTextureBarrier();
   }
-  host_state_.keep_color_buffers(pass.host_framebuffer ? GLuint(limits().color_attachment_max) : color_count_);
-  for (GLuint i = 1; pass.host_framebuffer && i < GLuint(limits().color_attachment_max); i++) {
+  host_state_.keep_color_buffers(color_count_);
+  const GLuint mask_count = pass.host_framebuffer ? GLuint(limits().color_attachment_max) : 0;
+  host_state_.keep_color_masks(mask_count);
+  for (GLuint i = 1; i < mask_count; i++) {
     glColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   }
   // Clears respect the write masks.

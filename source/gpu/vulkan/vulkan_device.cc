@@ -152,6 +152,12 @@ void VulkanDevice::finish()
   check("finish");
 }
 
+bool VulkanDevice::driver_trim()
+{
+  submissions_.finish();
+  return memory_.trim();
+}
+
 void VulkanDevice::time_mark(ResourceId query, bool is_end)
 {
   if (context_->timestamp_bits == 0) {

@@ -126,6 +126,7 @@ class VulkanDevice final : public Device {
   void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;
   void resource_destroy(ResourceKind kind, ResourceId id) override;
+  bool driver_trim() override;
   void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) override;
   void texture_upload(ResourceId id, int layer, std::span<const std::byte> texels) override;
   void mipmaps_generate(ResourceId id) override;

@@ -187,6 +187,16 @@ void VulkanMemory::free(const MemoryPlace &place)
   }
 }
 
+bool VulkanMemory::trim()
+{
+  return std::erase_if(blocks_, [&](const MemoryBlock &block) {
+           if (block.allocation_count == 0) {
+             context_.vk.vkFreeMemory(context_.device, block.memory, nullptr);
+           }
+           return block.allocation_count == 0;
+         }) > 0;
+}
+
 VulkanBuffer VulkanMemory::make_buffer(std::string_view what, VkDeviceSize size_bytes, VkBufferUsageFlags usage,
                                        MemoryUse use)
 {

@@ -78,6 +78,9 @@ class VulkanMemory {
   [[nodiscard]] VkImage make_image(std::string_view what, const VkImageCreateInfo &info, MemoryPlace &place);
   void destroy(VkImage image, const MemoryPlace &place);
 
+  /** Free the blocks that are kept for the next resource. \return whether there was one */
+  bool trim();
+
   /** After writes of the CPU to \a bytes of a buffer, and before the device reads them. */
   void flush(const VulkanBuffer &buffer, const MemoryRange &bytes);
   /** Before reads of the CPU. */

@@ -5,7 +5,11 @@
 #include "internal/reference_triangle.hh"
 #include "reference_tracer.hh"
 
+#if GNOMON_EMBREE >= 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <array>
 #include <cstdint>
@@ -87,7 +91,13 @@ struct Tracer::Tree {
 };
 
 /** Context that Embree passes to its callbacks. */
-struct ClosestQuery : RTCIntersectContext {
+#if GNOMON_EMBREE >= 4
+using QueryContext = RTCRayQueryContext;
+#else
+using QueryContext = RTCIntersectContext;
+#endif
+
+struct ClosestQuery : QueryContext {
   ShearedRay sheared;
   const Ray &ray;
   Faces faces;
@@ -96,7 +106,7 @@ struct ClosestQuery : RTCIntersectContext {
   std::optional<Hit> best;
 };
 
-struct BlockedQuery : RTCIntersectContext {
+struct BlockedQuery : QueryContext {
   ShearedRay sheared;
   const glm::dvec3 &point;
   double error_m;

@@ -3,27 +3,47 @@
 
 #include "shader_check_log.hh"
 
-#include <glslang/MachineIndependent/localintermediate.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <algorithm>
 
 namespace gnomon::shader_check {
 
-bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target)
+bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots)
 {
-  const bool is_done = glslang.add(*source, target);
+  target_ = target;
+  const bool is_done = glslang.add(*source, target, needs_slots);
   sources.push_back(std::move(source));
-  SourceLines &added = lines.emplace_back(*sources.back());
-  const glslang::TIntermediate *parsed = glslang.intermediate(sources.size() - 1);
-  // Before version 3.30, `#line N` sets its own line.
-  added.read(parsed == nullptr || parsed->getProfile() == EEsProfile || parsed->getVersion() >= 330);
+  lines.emplace_back(*sources.back()).read(target);
   return is_done;
 }
 
-void Compilation::read_facts()
+const Spirv &Compilation::spirv(std::size_t stage)
 {
+  spirv_.resize(sources.size());
+  Spirv &result = spirv_[stage];
+  if (result.words.empty()) {
+    spv::SpvBuildLogger logger;
+    glslang::GlslangToSpv(*tree(stage), result.words, &logger);
+    result.log = logger.getAllMessages();
+  }
+  return result;
+}
+
+void Compilation::read_facts([[maybe_unused]] bool is_sound, [[maybe_unused]] bool with_mistakes)
+{
+  facts.resize(sources.size());
   for (std::size_t i = 0; i < sources.size(); i++) {
-    facts.push_back(tree(i) == nullptr ? StageFacts() : read_stage(*tree(i), lines[i]));
+    if (tree(i) == nullptr) {
+      continue;
+    }
+#if GNOMON_GLSLANG_TREE
+    facts[i] = read_tree(*tree(i), lines[i], with_mistakes);
+#else
+    if (is_sound && has_spirv(target_)) {
+      facts[i] = read_spirv(spirv(i).words, sources[i]->stage(), lines[i]);
+    }
+#endif
   }
 }
 
@@ -44,7 +64,7 @@ void compile(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files, Compila
   if (!compilation.glslang.link()) {
     throw gpu::Error("shader '{}' does not link:\n{}", desc.name, bounded_lines(compilation.glslang.log()));
   }
-  compilation.read_facts();
+  compilation.read_facts(true, false);
 }
 
 std::optional<StageDeclaration> find_block(const Compilation &compilation, gpu::BindingKind kind, std::string_view name)

@@ -6,6 +6,12 @@
 
 namespace gnomon::shader_check {
 
+/** A stage in SPIR-V, and messages about how it was made. */
+struct Spirv {
+  std::vector<std::uint32_t> words;
+  std::string log;
+};
+
 /** One shader for one target: its sources, glslang's program, and facts about its stages. */
 struct Compilation {
   /** In the order of stages. */
@@ -15,15 +21,27 @@ struct Compilation {
   /** Parallel to sources; empty until linked. */
   std::vector<StageFacts> facts;
 
+  /** Compiles the next stage. The target is the same for all. \a needs_slots: as for GlslangProgram::add(). */
+  bool add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots = true);
+  /** The stage in SPIR-V. Call it after linking, for targets with SPIR-V. */
+  const Spirv &spirv(std::size_t stage);
+  /**
+   * Call it after linking; \a is_sound: the stages are without mistakes, apart from differences between them. Without
+   * glslang's tree, the facts of other stages, and those for targets without SPIR-V, are empty.
+   */
+  void read_facts(bool is_sound, bool with_mistakes);
+  /** Path of the file at a position in a stage. */
+  [[nodiscard]] const std::string &file(std::size_t stage, SourcePosition position) const;
+
+ private:
   [[nodiscard]] const glslang::TIntermediate *tree(std::size_t stage)
   {
     return glslang.program().getIntermediate(glslang_language(sources[stage]->stage()));
   }
-  /** Compiles the next stage. */
-  bool add(std::unique_ptr<StageSource> source, CheckTarget target);
-  void read_facts();
-  /** Path of the file at a position in a stage. */
-  [[nodiscard]] const std::string &file(std::size_t stage, SourcePosition position) const;
+
+  CheckTarget target_ = CheckTarget::OpenGl;
+  /** Parallel to sources; those without words are not made yet. */
+  std::vector<Spirv> spirv_;
 };
 
 /** Compiles and links for OpenGL, and reads the facts. \throws Error if \a desc does not compile. */

@@ -232,16 +232,17 @@ class FunctionLint : public TIntermTraverser {
       return;
     }
     const std::string start = first_name(operand);
-    const std::string_view line = lines_.line(lines_.position(symbol->getLoc()));
+    const std::string_view line = lines_.line(position_of(symbol->getLoc(), lines_));
     const std::size_t at = start.empty() ? std::string_view::npos : find_word(line, start);
     // The name occurs twice in the line, so the expression is ambiguous.
     if (at == std::string_view::npos || find_word(line, start, at + 1) != std::string_view::npos) {
       return;
     }
     if (!ends_with_constructor(line.substr(0, at))) {
+      const std::string name = type_name(declared_type(unary->getType()));
       add("implicit-conversion", symbol->getLoc(),
-          fmt::format("a block's member of type {} becomes {} implicitly: write {}(…)", type_name(operand->getType()),
-                      type_name(unary->getType()), type_name(unary->getType())));
+          fmt::format("a block's member of type {} becomes {} implicitly: write {}(…)",
+                      type_name(declared_type(operand->getType())), name, name));
     }
   }
 
@@ -274,7 +275,7 @@ class FunctionLint : public TIntermTraverser {
 
   void add(std::string_view rule, const glslang::TSourceLoc &loc, std::string text)
   {
-    findings_.push_back({rule, lines_.position(loc), std::move(text), false});
+    findings_.push_back({rule, position_of(loc, lines_), std::move(text), false});
   }
 
   FunctionFacts facts_;

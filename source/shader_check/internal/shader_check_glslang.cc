@@ -135,7 +135,7 @@ int set_target(glslang::TShader &shader, EShLanguage language, CheckTarget targe
 
 }  // namespace
 
-bool GlslangProgram::add(StageSource &source, CheckTarget target)
+bool GlslangProgram::add(StageSource &source, CheckTarget target, bool needs_slots)
 {
   if (source.text().size() > stage_bytes_max) {
     log_ = fmt::format("ERROR: {}:1: the stage takes {} bytes with its includes, and at most {} are checked\n",
@@ -150,6 +150,9 @@ bool GlslangProgram::add(StageSource &source, CheckTarget target)
   shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
   shader.setPreamble(source.preamble().c_str());
   const int version = set_target(shader, language, target);
+  // Nothing is mapped without a call of mapIO().
+  shader.setAutoMapBindings(!needs_slots);
+  shader.setAutoMapLocations(!needs_slots);
   glslang::TShader::ForbidIncluder none;
   glslang::TShader::Includer *includer = source.includer();
   const bool is_done =

@@ -29,14 +29,9 @@ class GlslangProgram {
 
   /**
    * Compiles \a source, which must outlive the program. false on failure: log() has the reason. Sources of more than
-   * stage_bytes_max are refused.
+   * stage_bytes_max are refused. \a needs_slots: whether the target's rules about missing locations and bindings apply.
    */
-  bool add(StageSource &source, CheckTarget target);
-  /** The tree of a stage before link(), in the order of add(); nullptr: it was refused. */
-  [[nodiscard]] const glslang::TIntermediate *intermediate(std::size_t stage) const
-  {
-    return stage < shaders_.size() ? shaders_[stage]->getIntermediate() : nullptr;
-  }
+  bool add(StageSource &source, CheckTarget target, bool needs_slots = true);
   /** Call it after adding all stages. false on failure: log() has the reason. */
   bool link();
   /** Log of the last call. */
@@ -56,7 +51,7 @@ class GlslangProgram {
   std::string log_;
 };
 
-/** The interface of a linked program. */
+/** The blocks and textures of a linked program. */
 [[nodiscard]] gpu::ShaderInterface interface_of(glslang::TProgram &program);
 
 }  // namespace gnomon::shader_check

@@ -235,12 +235,6 @@ std::string_view StageSource::unmarked(std::size_t file, std::string_view text)
   return plain;
 }
 
-SourcePosition StageSource::position(const glslang::TSourceLoc &loc)
-{
-  return loc.name == nullptr ? position(std::to_string(std::max(loc.string, 0)), loc.line, loc.column)
-                             : position(std::string_view(loc.name->data(), loc.name->size()), loc.line, loc.column);
-}
-
 SourcePosition StageSource::position(std::string_view name, int line, int column)
 {
   SourcePosition position{0, std::max(line, 1), std::max(column, 0)};
@@ -285,6 +279,18 @@ std::optional<LineDirective> line_directive(std::string_view text)
   return directive;
 }
 
+/** The number in a `#version` directive; empty for other lines. */
+std::optional<int> version_of(std::string_view text)
+{
+  if (gpu::directive_of(text) != "version") {
+    return std::nullopt;
+  }
+  gpu::TextScanner scanner(text);
+  scanner.skip_space().take("#");
+  scanner.skip_space().take("version");
+  return scanner.skip_space().take_number();
+}
+
 constexpr std::string_view comment_mark = "shader-check: ";
 
 std::optional<RuleLevel> rule_level(std::string_view word)
@@ -302,8 +308,10 @@ std::uint64_t key_of(SourcePosition position)
 
 }  // namespace
 
-void SourceLines::read(bool line_sets_next)
+void SourceLines::read(CheckTarget target)
 {
+  // `#line N` sets the number of the next line in GLSL ES and from version 3.30 on, else that of its own line.
+  bool line_sets_next = target == CheckTarget::Es;
   for (const StageSource::File &file : source_.texts()) {
     read_levels(file);
     SourcePosition position{file.index, 1, 0};
@@ -311,6 +319,9 @@ void SourceLines::read(bool line_sets_next)
     for (std::string_view rest = file.text; !rest.empty();) {
       const std::string_view text = rest.substr(0, rest.find('\n'));
       rest.remove_prefix(std::min(text.size() + 1, rest.size()));
+      if (const std::optional<int> version = is_in_comment ? std::nullopt : version_of(text)) {
+        line_sets_next = *version == 100 || *version >= 300;
+      }
       if (const std::optional<LineDirective> set = is_in_comment ? std::nullopt : line_directive(text)) {
         const SourcePosition known = set->file.empty() ? position : source_.position(set->file, 1, 0);
         position.file = known.file;
@@ -400,6 +411,20 @@ std::optional<SourcePosition> SourceLines::find_name(std::string_view name, std:
     }
   }
   return lines_[found->second.front()].position;
+}
+
+SourcePosition SourceLines::find_member(SourcePosition owner, std::string_view name) const
+{
+  const auto begin = by_position_.find(key_of(owner));
+  for (std::size_t i = begin == by_position_.end() ? lines_.size() : begin->second; i < lines_.size(); i++) {
+    if (find_word(lines_[i].code, name) != std::string_view::npos) {
+      return lines_[i].position;
+    }
+    if (lines_[i].code.find('}') != std::string::npos) {
+      break;
+    }
+  }
+  return owner;
 }
 
 SourcePosition SourceLines::find_declaration(std::string_view name, std::string_view keyword) const

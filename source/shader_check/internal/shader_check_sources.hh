@@ -3,7 +3,6 @@
 
 #include "shader_check.hh"
 
-#include <glslang/Include/Common.h>
 #include <glslang/Public/ShaderLang.h>
 
 #include <memory>
@@ -94,7 +93,6 @@ class StageSource {
     return absent_;
   }
 
-  [[nodiscard]] SourcePosition position(const glslang::TSourceLoc &loc);
   /** \a name: as glslang prints it. */
   [[nodiscard]] SourcePosition position(std::string_view name, int line, int column);
   /** The index in files() of \a path, which is added if it is new. */
@@ -124,11 +122,12 @@ class SourceLines {
   explicit SourceLines(StageSource &source) : source_(source) {}
 
   /** Call it before other functions, and once glslang has read the includes. */
-  void read(bool line_sets_next);
+  void read(CheckTarget target);
 
-  [[nodiscard]] SourcePosition position(const glslang::TSourceLoc &loc) const
+  /** StageSource::position(). */
+  [[nodiscard]] SourcePosition position(std::string_view name, int line, int column) const
   {
-    return source_.position(loc);
+    return source_.position(name, line, column);
   }
   /** Whether a comment on the line names \a rule: `// shader-check: RULE, reason`. */
   [[nodiscard]] bool is_excused(SourcePosition position, std::string_view rule) const;
@@ -138,6 +137,8 @@ class SourceLines {
   [[nodiscard]] std::string_view line(SourcePosition position) const;
   /** The first line with \a name as a word outside of comments; preferably one where \a keyword precedes it. */
   [[nodiscard]] SourcePosition find_declaration(std::string_view name, std::string_view keyword) const;
+  /** The line with \a name as a word in the block or struct that begins at \a owner; \a owner if there is none. */
+  [[nodiscard]] SourcePosition find_member(SourcePosition owner, std::string_view name) const;
   /** As find_declaration(); empty if no line has \a name. */
   [[nodiscard]] std::optional<SourcePosition> find_name(std::string_view name, std::string_view keyword) const;
 

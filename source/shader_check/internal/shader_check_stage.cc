@@ -1,265 +1,457 @@
 // SPDX-License-Identifier: MIT
 #include "shader_check_stage.hh"
 
-#include "shader_check_function.hh"
-#include "shader_check_tree.hh"
+#include "gpu_shader.hh"
+
+#include <spirv-tools/libspirv.h>
+#include <glslang/SPIRV/spirv.hpp>
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <utility>
 
 namespace gnomon::shader_check {
 
-using glslang::TIntermAggregate;
-using glslang::TIntermediate;
-using glslang::TIntermSymbol;
-using glslang::TIntermTraverser;
-using glslang::TType;
-using glslang::TVisit;
-
-namespace {
-
-/** Reads functions, their calls and the globals that they use. */
-class StageReader : public TIntermTraverser {
- public:
-  std::vector<TIntermAggregate *> functions;
-  std::map<std::string, std::set<std::string>> calls;
-  std::set<long long> used;
-
-  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
-  {
-    if (aggregate->getOp() == glslang::EOpLinkerObjects) {
-      return false;
-    }
-    if (aggregate->getOp() == glslang::EOpFunction) {
-      functions.push_back(aggregate);
-      function_ = text_of(aggregate->getName());
-    }
-    else if (aggregate->getOp() == glslang::EOpFunctionCall) {
-      calls[function_].insert(text_of(aggregate->getName()));
-    }
-    return true;
-  }
-  void visitSymbol(TIntermSymbol *symbol) override
-  {
-    used.insert(symbol->getId());
-  }
-
- private:
-  std::string function_;
-};
-
-/** The functions that call themselves, directly or through others, by Tarjan's algorithm. */
-class Recursion {
- public:
-  explicit Recursion(const std::map<std::string, std::set<std::string>> &calls) : calls_(calls)
-  {
-    for (const auto &[name, callees] : calls) {
-      if (!nodes_.contains(name)) {
-        visit(name);
-      }
-    }
-  }
-  bool contains(const std::string &name) const
-  {
-    return found_.contains(name);
-  }
-
- private:
-  struct Node {
-    std::size_t index;
-    std::size_t low;
-    bool is_open = true;
-  };
-
-  Node &visit(const std::string &name)
-  {
-    Node &node = nodes_.emplace(name, Node{nodes_.size(), nodes_.size()}).first->second;
-    open_.push_back(name);
-    bool is_found = false;
-    if (const auto calls = calls_.find(name); calls != calls_.end()) {
-      for (const std::string &callee : calls->second) {
-        const auto known = nodes_.find(callee);
-        const Node &other = known == nodes_.end() ? visit(callee) : known->second;
-        if (other.is_open) {
-          node.low = std::min(node.low, other.low);
-        }
-        is_found |= callee == name;
-      }
-    }
-    if (node.low == node.index) {
-      is_found |= open_.back() != name;
-      for (bool is_last = false; !is_last;) {
-        const std::string member = open_.back();
-        open_.pop_back();
-        nodes_.at(member).is_open = false;
-        if (is_found) {
-          found_.insert(member);
-        }
-        is_last = member == name;
-      }
-    }
-    return node;
-  }
-
-  const std::map<std::string, std::set<std::string>> &calls_;
-  std::map<std::string, Node> nodes_;
-  std::vector<std::string> open_;
-  std::set<std::string> found_;
-};
-
-void find_recursion(const StageReader &reader, const SourceLines &lines, std::vector<StageFinding> &findings)
+std::string type_name(const DeclaredType &type, bool is_arrayed)
 {
-  const Recursion recursion(reader.calls);
-  for (const TIntermAggregate *function : reader.functions) {
-    const std::string name = text_of(function->getName());
-    if (recursion.contains(name)) {
-      findings.push_back({"recursion", lines.position(function->getLoc()),
-                          fmt::format("function '{}' calls itself, directly or through others, which GLSL forbids",
-                                      name.substr(0, name.find('('))),
-                          true});
-    }
+  std::string name = type.name;
+  for (std::size_t i = is_arrayed ? 1 : 0; i < type.array_sizes.size(); i++) {
+    name += fmt::format("[{}]", type.array_sizes[i]);
   }
+  return name;
 }
 
-/** Reports arrays of elements that do not fill rows of 16 bytes: C++ packs them, std140 does not. */
-void check_array(const TType &type, const BlockMember &member, bool is_std140, std::vector<StageFinding> &findings)
+void check_array(const DeclaredType &type, bool has_rows, const BlockMember &member,
+                 std::vector<StageFinding> &findings)
 {
-  if (type.isMatrix() && type.getMatrixRows() != 4) {
+  const bool is_array = !type.array_sizes.empty();
+  const bool is_matrix = type.row_count > 0;
+  if (is_matrix && type.row_count != 4) {
     findings.push_back({"block-array", member.position,
                         fmt::format("'{}': a matrix with {} rows takes 16 bytes a column in a block; C++ has {}",
-                                    member.name, type.getMatrixRows(), 4 * type.getMatrixRows()),
-                        type.getMatrixRows() == 3});
+                                    member.name, type.row_count, 4 * type.row_count),
+                        type.row_count == 3});
   }
-  else if (type.isArray() && type.isVector() && type.getVectorSize() == 3) {
+  else if (is_array && type.vector_size == 3) {
     findings.push_back(
         {"block-array", member.position,
          fmt::format("'{}': an array of vec3 takes 16 bytes an element in a block; C++ has 12", member.name), true});
   }
-  else if (type.isArray() && is_std140 && !type.isMatrix() && type.getVectorSize() < 4 &&
-           type.getBasicType() != glslang::EbtDouble) {
-    findings.push_back(
-        {"block-array", member.position,
-         fmt::format("'{}': an array of {} takes 16 bytes an element in a std140 block; C++ has {}", member.name,
-                     type.getVectorSize() == 1 ? "scalars" : "vec2", 4 * type.getVectorSize()),
-         false});
+  else if (is_array && has_rows && !is_matrix && type.vector_size < 4 && type.scalar != "double") {
+    findings.push_back({"block-array", member.position,
+                        fmt::format("'{}': an array of {} takes 16 bytes an element in a std140 block; C++ has {}",
+                                    member.name, type.vector_size == 1 ? "scalars" : "vec2", 4 * type.vector_size),
+                        false});
   }
 }
 
-void add_members(const TType &type, const std::string &prefix, const std::string &structure, bool is_std140,
-                 const SourceLines &lines, Declaration &block, std::vector<StageFinding> &findings)
-{
-  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
-    const std::string name = prefix + text_of(entry.type->getFieldName());
-    if (entry.type->isStruct()) {
-      add_members(*entry.type, name + (entry.type->isArray() ? "[0]." : "."), text_of(entry.type->getTypeName()),
-                  is_std140, lines, block, findings);
-      continue;
+namespace {
+
+/** Values by decoration; 0 for those without. */
+using Decorations = std::map<std::uint32_t, std::uint32_t>;
+
+struct SpirvType {
+  spv::Op op = spv::OpNop;
+  /** Words behind the result. */
+  std::vector<std::uint32_t> operands;
+  struct Member {
+    std::string name;
+    Decorations decorations;
+  };
+  /** Of a struct, as far as they have a name or a decoration. */
+  std::map<std::uint32_t, Member> members;
+};
+
+struct SpirvVariable {
+  std::uint32_t id = 0;
+  /** Of the pointer. */
+  std::uint32_t type = 0;
+  spv::StorageClass storage = spv::StorageClassFunction;
+};
+
+/** What the declarations of a module consist of. */
+struct SpirvModule {
+  std::map<std::uint32_t, std::string> names;
+  std::map<std::uint32_t, SpirvType> types;
+  std::map<std::uint32_t, Decorations> decorations;
+  /** Constants of one word. */
+  std::map<std::uint32_t, std::uint32_t> constants;
+  /** Outside of functions. */
+  std::vector<SpirvVariable> variables;
+  /** By id: whether a function uses it. */
+  std::vector<bool> used;
+  bool is_in_function = false;
+
+  explicit SpirvModule(std::span<const std::uint32_t> words)
+  {
+    // The environment decides nothing about the form of instructions.
+    const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
+    const auto header = [](void *self, spv_endianness_t, std::uint32_t, std::uint32_t, std::uint32_t,
+                           std::uint32_t bound, std::uint32_t) {
+      static_cast<SpirvModule *>(self)->used.resize(bound);
+      return SPV_SUCCESS;
+    };
+    const auto instruction = [](void *self, const spv_parsed_instruction_t *one) {
+      static_cast<SpirvModule *>(self)->add(*one);
+      return SPV_SUCCESS;
+    };
+    spvBinaryParse(context, this, words.data(), words.size(), header, instruction, nullptr);
+    spvContextDestroy(context);
+  }
+
+  [[nodiscard]] const SpirvType &type(std::uint32_t id) const
+  {
+    static const SpirvType none;
+    const auto found = types.find(id);
+    return found == types.end() ? none : found->second;
+  }
+  [[nodiscard]] std::string name(std::uint32_t id) const
+  {
+    const auto found = names.find(id);
+    return found == names.end() ? std::string() : found->second;
+  }
+
+ private:
+  static std::string text_at(const spv_parsed_instruction_t &one, std::size_t word)
+  {
+    return reinterpret_cast<const char *>(one.words + word);
+  }
+  static std::pair<std::uint32_t, std::uint32_t> decoration_at(const spv_parsed_instruction_t &one, std::size_t word)
+  {
+    return {one.words[word], word + 1U < one.num_words ? one.words[word + 1] : 0U};
+  }
+
+  void add(const spv_parsed_instruction_t &one)
+  {
+    const std::uint32_t *words = one.words;
+    if (is_in_function) {
+      for (std::size_t i = 0; i < one.num_operands; i++) {
+        const spv_parsed_operand_t &operand = one.operands[i];
+        if (operand.type == SPV_OPERAND_TYPE_ID && words[operand.offset] < used.size()) {
+          used[words[operand.offset]] = true;
+        }
+      }
+      return;
     }
-    block.members.push_back({name, structure, lines.position(entry.loc)});
-    check_array(*entry.type, block.members.back(), is_std140, findings);
-  }
-}
-
-/** Sets what an input or output of \a type takes. */
-void set_locations(Declaration &declaration, const TType &type, bool is_arrayed, EShLanguage language)
-{
-  const glslang::TQualifier &qualifier = type.getQualifier();
-  declaration.type = &type;
-  declaration.is_arrayed = is_arrayed;
-  declaration.location = qualifier.hasLocation() ? int(qualifier.layoutLocation) : -1;
-  const int count = TIntermediate::computeTypeLocationSize(type, language);
-  const int elements = is_arrayed && type.isArray() ? std::max(type.getOuterArraySize(), 1) : 1;
-  declaration.location_count = std::max(count / elements, 1);
-  const bool is_double = type.getBasicType() == glslang::EbtDouble;
-  if (declaration.location_count == 1 && !type.isStruct() && !type.isMatrix() && !is_double) {
-    declaration.component = qualifier.hasComponent() ? int(qualifier.layoutComponent) : 0;
-    declaration.component_count = type.getVectorSize();
-  }
-}
-
-/** Adds an input or output. The members of a block with locations are connected one by one. */
-void add_varying(Declaration declaration, EShLanguage language, std::vector<Declaration> &list)
-{
-  const TType &type = *declaration.type;
-  const bool is_arrayed = type.getQualifier().isArrayedIo(language);
-  declaration.is_captured = type.getQualifier().hasXfbOffset();
-  const auto has_location = [](const glslang::TTypeLoc &entry) { return entry.type->getQualifier().hasLocation(); };
-  if (type.getBasicType() != glslang::EbtBlock || std::ranges::none_of(*type.getStruct(), has_location)) {
-    set_locations(declaration, type, is_arrayed, language);
-    list.push_back(std::move(declaration));
-    return;
-  }
-  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
-    Declaration member = declaration;
-    member.name += "." + text_of(entry.type->getFieldName());
-    member.is_member = true;
-    member.is_captured |= entry.type->getQualifier().hasXfbOffset();
-    set_locations(member, *entry.type, false, language);
-    list.push_back(std::move(member));
-  }
-}
-
-/** Adds an object of the stage's interface, if it is a block, texture, input or output. */
-void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, const SourceLines &lines,
-                     EShLanguage language, StageFacts &facts)
-{
-  const TType &type = symbol.getType();
-  const glslang::TQualifier &qualifier = type.getQualifier();
-  const bool is_block = type.getBasicType() == glslang::EbtBlock;
-  Declaration declaration;
-  declaration.name = text_of(is_block ? type.getTypeName() : symbol.getName());
-  declaration.type = &type;
-  declaration.is_used = reader.used.contains(symbol.getId());
-  declaration.set = qualifier.hasSet() ? int(qualifier.layoutSet) : 0;
-  declaration.slot = qualifier.hasBinding() ? int(qualifier.layoutBinding) : -1;
-  if (declaration.name.starts_with("gl_") || qualifier.builtIn != glslang::EbvNone) {
-    return;
-  }
-  if (qualifier.isUniformOrBuffer()) {
-    const bool is_buffer = qualifier.storage == glslang::EvqBuffer;
-    declaration.position = lines.find_declaration(declaration.name, is_buffer ? "buffer" : "uniform");
-    if (is_block) {
-      add_members(type, "", "", qualifier.layoutPacking == glslang::ElpStd140, lines, declaration, facts.findings);
-      declaration.is_push_constant = qualifier.isPushConstant() || declaration.name == gpu::push_constant_block_name;
-      // The slot of push constants depends on the target.
-      declaration.slot = qualifier.isPushConstant() ? -1 : declaration.slot;
-      (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
+    switch (one.opcode) {
+      case spv::OpFunction: is_in_function = true; break;
+      case spv::OpName: names[words[1]] = text_at(one, 2); break;
+      case spv::OpMemberName: types[words[1]].members[words[2]].name = text_at(one, 3); break;
+      case spv::OpDecorate: decorations[words[1]].insert(decoration_at(one, 2)); break;
+      case spv::OpMemberDecorate: types[words[1]].members[words[2]].decorations.insert(decoration_at(one, 3)); break;
+      case spv::OpConstant:
+      case spv::OpSpecConstant: constants[one.result_id] = words[3]; break;
+      case spv::OpVariable: variables.push_back({one.result_id, one.type_id, spv::StorageClass(words[3])}); break;
+      default:
+        // What defines an id without a type is a type, a label, a group of decorations or a name of an extension.
+        if (one.result_id != 0 && one.type_id == 0) {
+          SpirvType &type = types[one.result_id];
+          type.op = spv::Op(one.opcode);
+          type.operands.assign(words + 2, words + one.num_words);
+        }
     }
-    else if (type.containsOpaque()) {
-      declaration.is_image = type.getBasicType() == glslang::EbtSampler && type.getSampler().isImage();
+  }
+};
+
+class SpirvReader {
+ public:
+  SpirvReader(const SpirvModule &module, Stage stage, const SourceLines &lines)
+      : module_(module), stage_(stage), lines_(lines)
+  {
+    for (const SpirvVariable &variable : module.variables) {
+      add(variable);
+    }
+  }
+  StageFacts facts;
+
+ private:
+  static const std::uint32_t *find(const Decorations &decorations, spv::Decoration decoration)
+  {
+    const auto found = decorations.find(decoration);
+    return found == decorations.end() ? nullptr : &found->second;
+  }
+  const std::uint32_t *find(std::uint32_t id, spv::Decoration decoration) const
+  {
+    const auto found = module_.decorations.find(id);
+    return found == module_.decorations.end() ? nullptr : find(found->second, decoration);
+  }
+  static int value_or(const std::uint32_t *value, int other)
+  {
+    return value == nullptr ? other : int(*value);
+  }
+  static const SpirvType::Member &member_of(const SpirvType &type, std::uint32_t index)
+  {
+    static const SpirvType::Member none;
+    const auto found = type.members.find(index);
+    return found == type.members.end() ? none : found->second;
+  }
+  static bool is_array(const SpirvType &type)
+  {
+    return type.op == spv::OpTypeArray || type.op == spv::OpTypeRuntimeArray;
+  }
+  /** 0: the shader gives none. */
+  int length_of(const SpirvType &array) const
+  {
+    const auto length =
+        array.op == spv::OpTypeArray ? module_.constants.find(array.operands[1]) : module_.constants.end();
+    return length == module_.constants.end() ? 0 : int(length->second);
+  }
+  /** The type of elements of \a id, and of their elements; \a id if it is no array. */
+  std::uint32_t element_of(std::uint32_t id) const
+  {
+    while (is_array(module_.type(id))) {
+      id = module_.type(id).operands[0];
+    }
+    return id;
+  }
+
+  /** The name of a scalar, and what begins the names of its vectors. */
+  std::pair<std::string, std::string> scalar_name(std::uint32_t id) const
+  {
+    const SpirvType &type = module_.type(id);
+    const std::uint32_t bits = type.operands.empty() ? 0U : type.operands[0];
+    switch (type.op) {
+      case spv::OpTypeBool: return {"bool", "b"};
+      case spv::OpTypeFloat:
+        return bits == 32   ? std::pair<std::string, std::string>{"float", ""}
+               : bits == 64 ? std::pair<std::string, std::string>{"double", "d"}
+                            : std::pair<std::string, std::string>{"float16_t", "f16"};
+      case spv::OpTypeInt: {
+        const bool is_signed = type.operands[1] != 0;
+        const std::string name = is_signed ? "int" : "uint";
+        const std::string start = is_signed ? "i" : "u";
+        return bits == 32 ? std::pair{name, start}
+                          : std::pair{fmt::format("{}{}_t", name, bits), fmt::format("{}{}", start, bits)};
+      }
+      default: return {};
+    }
+  }
+  DeclaredType declared_type(std::uint32_t id) const
+  {
+    DeclaredType result;
+    for (; is_array(module_.type(id)); id = module_.type(id).operands[0]) {
+      result.array_sizes.push_back(length_of(module_.type(id)));
+    }
+    const SpirvType &type = module_.type(id);
+    const SpirvType &column = type.op == spv::OpTypeMatrix ? module_.type(type.operands[0]) : type;
+    const auto [scalar, start] = scalar_name(column.op == spv::OpTypeVector ? column.operands[0] : id);
+    result.scalar = scalar;
+    if (type.op == spv::OpTypeStruct) {
+      result.is_struct = true;
+      result.name = module_.name(id);
+    }
+    else if (type.op == spv::OpTypeMatrix) {
+      result.row_count = int(column.operands[1]);
+      result.name = fmt::format("{}mat{}x{}", start, type.operands[1], result.row_count);
+    }
+    else if (type.op == spv::OpTypeVector) {
+      result.vector_size = int(type.operands[1]);
+      result.name = fmt::format("{}vec{}", start, result.vector_size);
+    }
+    else {
+      result.name = scalar.empty() ? "sampler" : scalar;
+    }
+    return result;
+  }
+
+  int location_count(std::uint32_t id, bool is_vertex_input) const
+  {
+    const SpirvType &type = module_.type(id);
+    if (is_array(type)) {
+      return std::max(length_of(type), 1) * location_count(type.operands[0], is_vertex_input);
+    }
+    switch (type.op) {
+      case spv::OpTypeStruct: {
+        int count = 0;
+        for (const std::uint32_t member : type.operands) {
+          count += location_count(member, is_vertex_input);
+        }
+        return count;
+      }
+      case spv::OpTypeMatrix: return int(type.operands[1]) * location_count(type.operands[0], is_vertex_input);
+      case spv::OpTypeVector:
+        return type.operands[1] > 2 && module_.type(type.operands[0]).operands[0] == 64 && !is_vertex_input ? 2 : 1;
+      default: return 1;
+    }
+  }
+
+  /** Size of a member or element of \a id in a block. \a member: its decorations. */
+  std::uint32_t size_of(std::uint32_t id, const Decorations &member) const
+  {
+    const SpirvType &type = module_.type(id);
+    switch (type.op) {
+      case spv::OpTypeArray: return std::uint32_t(length_of(type) * value_or(find(id, spv::DecorationArrayStride), 0));
+      case spv::OpTypeMatrix: {
+        const bool is_row_major = find(member, spv::DecorationRowMajor) != nullptr;
+        const std::uint32_t count = is_row_major ? module_.type(type.operands[0]).operands[1] : type.operands[1];
+        return count * std::uint32_t(value_or(find(member, spv::DecorationMatrixStride), 0));
+      }
+      case spv::OpTypeStruct: {
+        std::uint32_t end = 0;
+        for (std::uint32_t i = 0; i < type.operands.size(); i++) {
+          const Decorations &decorations = member_of(type, i).decorations;
+          end = std::max(end, std::uint32_t(value_or(find(decorations, spv::DecorationOffset), 0)) +
+                                  size_of(type.operands[i], decorations));
+        }
+        return end;
+      }
+      case spv::OpTypeVector: return type.operands[1] * size_of(type.operands[0], member);
+      case spv::OpTypeInt:
+      case spv::OpTypeFloat: return type.operands[0] / 8;
+      // An address.
+      case spv::OpTypePointer: return 8;
+      default: return 0;
+    }
+  }
+
+  void add_members(std::uint32_t id, const std::string &prefix, const std::string &structure, SourcePosition position,
+                   Declaration &block)
+  {
+    const SpirvType &type = module_.type(id);
+    for (std::uint32_t i = 0; i < type.operands.size(); i++) {
+      const SpirvType::Member &member = member_of(type, i);
+      const std::string name = prefix + member.name;
+      const std::uint32_t element = element_of(type.operands[i]);
+      if (module_.type(element).op == spv::OpTypeStruct) {
+        const std::string inner = module_.name(element);
+        add_members(element, name + (element == type.operands[i] ? "." : "[0]."), inner,
+                    lines_.find_declaration(inner, "struct"), block);
+        continue;
+      }
+      block.members.push_back({name, structure, lines_.find_member(position, member.name)});
+      const bool has_rows = value_or(find(type.operands[i], spv::DecorationArrayStride), 0) == 16;
+      check_array(declared_type(type.operands[i]), has_rows, block.members.back(), facts.findings);
+    }
+  }
+
+  /** Whether the outermost array of an input or output holds the vertices or primitives that the stage works on. */
+  bool is_arrayed(std::uint32_t id, bool is_input) const
+  {
+    switch (stage_) {
+      case Stage::TessControl: return find(id, spv::DecorationPatch) == nullptr;
+      case Stage::TessEvaluation: return is_input && find(id, spv::DecorationPatch) == nullptr;
+      case Stage::Geometry: return is_input;
+      case Stage::Mesh: return !is_input;
+      case Stage::Fragment: return is_input && find(id, spv::DecorationPerVertexKHR) != nullptr;
+      default: return false;
+    }
+  }
+
+  void set_locations(Declaration &declaration, std::uint32_t type, const Decorations &decorations, bool is_input) const
+  {
+    declaration.type = declared_type(type);
+    declaration.location = value_or(find(decorations, spv::DecorationLocation), -1);
+    const std::uint32_t element =
+        declaration.is_arrayed && is_array(module_.type(type)) ? module_.type(type).operands[0] : type;
+    declaration.location_count = std::max(location_count(element, is_input && stage_ == Stage::Vertex), 1);
+    const DeclaredType &declared = declaration.type;
+    if (declaration.location_count == 1 && !declared.is_struct && declared.row_count == 0 &&
+        declared.scalar != "double") {
+      declaration.component = value_or(find(decorations, spv::DecorationComponent), 0);
+      declaration.component_count = declared.vector_size;
+    }
+  }
+
+  void add_varying(const SpirvVariable &variable, std::uint32_t type, Declaration declaration)
+  {
+    const bool is_input = variable.storage == spv::StorageClassInput;
+    declaration.position = lines_.find_declaration(declaration.name, is_input ? "in" : "out");
+    declaration.is_arrayed = is_arrayed(variable.id, is_input);
+    declaration.is_captured = find(variable.id, spv::DecorationOffset) != nullptr;
+    std::vector<Declaration> &list = is_input ? facts.inputs : facts.outputs;
+    const std::uint32_t element = element_of(type);
+    const SpirvType &block = module_.type(element);
+    static const Decorations none;
+    const auto own = module_.decorations.find(variable.id);
+    const bool has_locations = std::ranges::any_of(block.members, [](const auto &entry) {
+      return find(entry.second.decorations, spv::DecorationLocation) != nullptr;
+    });
+    if (!has_locations) {
+      set_locations(declaration, type, own == module_.decorations.end() ? none : own->second, is_input);
+      list.push_back(std::move(declaration));
+      return;
+    }
+    for (std::uint32_t i = 0; i < block.operands.size(); i++) {
+      const SpirvType::Member &entry = member_of(block, i);
+      Declaration member = declaration;
+      member.name += "." + entry.name;
+      member.is_member = true;
+      member.is_arrayed = false;
+      member.is_captured |= find(entry.decorations, spv::DecorationOffset) != nullptr;
+      set_locations(member, block.operands[i], entry.decorations, is_input);
+      list.push_back(std::move(member));
+    }
+  }
+
+  void add(const SpirvVariable &variable)
+  {
+    const std::uint32_t type = module_.type(variable.type).operands[1];
+    const std::uint32_t element = element_of(type);
+    const bool is_buffer = find(element, spv::DecorationBufferBlock) != nullptr;
+    const bool is_block = is_buffer || find(element, spv::DecorationBlock) != nullptr;
+    Declaration declaration;
+    declaration.name = module_.name(is_block ? element : variable.id);
+    declaration.is_used = module_.used[variable.id];
+    declaration.set = value_or(find(variable.id, spv::DecorationDescriptorSet), 0);
+    declaration.slot = value_or(find(variable.id, spv::DecorationBinding), -1);
+    if (declaration.name.starts_with("gl_") || find(variable.id, spv::DecorationBuiltIn) != nullptr) {
+      return;
+    }
+    switch (variable.storage) {
+      case spv::StorageClassInput:
+      case spv::StorageClassOutput: add_varying(variable, type, std::move(declaration)); break;
+      case spv::StorageClassUniform:
+      case spv::StorageClassPushConstant:
+        if (is_block) {
+          add_block(variable, type, is_buffer, std::move(declaration));
+        }
+        break;
+      case spv::StorageClassStorageBuffer:
+      case spv::StorageClassShaderRecordBufferKHR: add_block(variable, type, true, std::move(declaration)); break;
+      case spv::StorageClassUniformConstant:
+      case spv::StorageClassAtomicCounter: add_texture(type, std::move(declaration)); break;
+      default: break;
+    }
+  }
+
+  void add_block(const SpirvVariable &variable, std::uint32_t type, bool is_buffer, Declaration declaration)
+  {
+    const std::uint32_t element = element_of(type);
+    declaration.type = declared_type(type);
+    declaration.position = lines_.find_declaration(declaration.name, is_buffer ? "buffer" : "uniform");
+    declaration.is_push_constant =
+        variable.storage == spv::StorageClassPushConstant || declaration.name == gpu::push_constant_block_name;
+    declaration.size_bytes = size_of(element, {});
+    add_members(element, "", "", declaration.position, declaration);
+    (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
+  }
+
+  void add_texture(std::uint32_t type, Declaration declaration)
+  {
+    declaration.type = declared_type(type);
+    const SpirvType &element = module_.type(element_of(type));
+    // Words of OpTypeImage: sampled type, dimension, depth, arrayed, multisampled, whether it is sampled: 2 for not.
+    declaration.is_image =
+        element.op == spv::OpTypeImage && element.operands[5] == 2 && element.operands[1] != spv::DimSubpassData;
+    const bool is_atomic = element.op == spv::OpTypeInt && declaration.slot >= 0;
+    // Others are uniforms outside of blocks.
+    if (declaration.type.scalar.empty() || is_atomic) {
+      declaration.position = lines_.find_declaration(declaration.name, "uniform");
       facts.textures.push_back(std::move(declaration));
     }
   }
-  else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
-    declaration.position = lines.find_declaration(declaration.name, qualifier.isPipeInput() ? "in" : "out");
-    add_varying(std::move(declaration), language, qualifier.isPipeInput() ? facts.inputs : facts.outputs);
-  }
-}
+
+  const SpirvModule &module_;
+  Stage stage_;
+  const SourceLines &lines_;
+};
 
 }  // namespace
 
-StageFacts read_stage(const TIntermediate &tree, const SourceLines &lines)
+StageFacts read_spirv(std::span<const std::uint32_t> spirv, Stage stage, const SourceLines &lines)
 {
-  StageFacts facts;
-  TIntermNode *root = tree.getTreeRoot();
-  if (root == nullptr) {
-    return facts;
-  }
-  StageReader reader;
-  root->traverse(&reader);
-  if (const TIntermAggregate *objects = tree.findLinkerObjects()) {
-    for (const TIntermNode *object : objects->getSequence()) {
-      if (const TIntermSymbol *symbol = object->getAsSymbolNode()) {
-        add_declaration(*symbol, reader, lines, tree.getStage(), facts);
-      }
-    }
-  }
-  find_recursion(reader, lines, facts.findings);
-  for (TIntermAggregate *function : reader.functions) {
-    check_function(function, lines, facts.findings);
-  }
-  return facts;
+  const SpirvModule module(spirv);
+  return std::move(SpirvReader(module, stage, lines).facts);
 }
 
 }  // namespace gnomon::shader_check

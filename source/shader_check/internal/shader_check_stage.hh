@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads the declarations of a stage, their use and likely mistakes from glslang's tree.
+// The declarations of a stage, their use and likely mistakes.
 #pragma once
 
 #include "shader_check_sources.hh"
@@ -7,6 +7,24 @@
 #include <glslang/Public/ShaderLang.h>
 
 namespace gnomon::shader_check {
+
+/** The type of a declaration or of a member of a block. */
+struct DeclaredType {
+  /** GLSL's name without the sizes of arrays. */
+  std::string name;
+  /** The type of each component, such as `float`; empty: structs, and types such as samplers. */
+  std::string scalar;
+  /** 1: scalars, structs and others. */
+  int vector_size = 1;
+  /** Of a matrix; 0: no matrix. */
+  int row_count = 0;
+  bool is_struct = false;
+  /** The sizes of arrays, outermost first; 0: the shader gives none. */
+  std::vector<int> array_sizes;
+};
+
+/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, the vertices of a primitive. */
+[[nodiscard]] std::string type_name(const DeclaredType &type, bool is_arrayed = false);
 
 /** A mistake at a line; rule and text as in CheckMessage. */
 struct StageFinding {
@@ -24,10 +42,10 @@ struct BlockMember {
   SourcePosition position;
 };
 
-/** A block, texture, stage input or stage output. Types belong to the glslang program. */
+/** A block, texture, stage input or stage output. */
 struct Declaration {
   std::string name;
-  const glslang::TType *type = nullptr;
+  DeclaredType type;
   SourcePosition position;
   int set = 0;
   /** -1: none. */
@@ -47,8 +65,9 @@ struct Declaration {
   bool is_push_constant = false;
   /** Whether it is an image, which OpenGL numbers apart from textures. */
   bool is_image = false;
-  /** Blocks. */
+  /** Blocks. A uniform block ends at the end of its last member's row of 16 bytes. */
   std::vector<BlockMember> members;
+  std::uint32_t size_bytes = 0;
 };
 
 struct StageFacts {
@@ -60,7 +79,16 @@ struct StageFacts {
   std::vector<StageFinding> findings;
 };
 
-/** Call it after linking, which removes functions without a caller. Otherwise their uses count, too. */
-[[nodiscard]] StageFacts read_stage(const glslang::TIntermediate &tree, const SourceLines &lines);
+/** Reports \a member if it is an array whose elements C++ packs. \a has_rows: whether each element fills 16 bytes. */
+void check_array(const DeclaredType &type, bool has_rows, const BlockMember &member,
+                 std::vector<StageFinding> &findings);
+
+/**
+ * Reads glslang's tree. Call it after linking, which removes functions without a caller. Otherwise their uses count,
+ * too. \a with_mistakes: also look for mistakes in functions.
+ */
+[[nodiscard]] StageFacts read_tree(const glslang::TIntermediate &tree, const SourceLines &lines, bool with_mistakes);
+/** Reads declarations and their use, but no mistakes in functions, from \a spirv, which glslang made after linking. */
+[[nodiscard]] StageFacts read_spirv(std::span<const std::uint32_t> spirv, Stage stage, const SourceLines &lines);
 
 }  // namespace gnomon::shader_check

@@ -24,7 +24,13 @@ std::string text_of(const glslang::TString &text)
   return {text.data(), text.size()};
 }
 
-std::string type_name(const glslang::TType &type, bool is_arrayed)
+SourcePosition position_of(const glslang::TSourceLoc &loc, const SourceLines &lines)
+{
+  return loc.name == nullptr ? lines.position(std::to_string(std::max(loc.string, 0)), loc.line, loc.column)
+                             : lines.position({loc.name->data(), loc.name->size()}, loc.line, loc.column);
+}
+
+DeclaredType declared_type(const glslang::TType &type)
 {
   static const std::map<glslang::TBasicType, std::pair<const char *, const char *>> names = {
       {glslang::EbtFloat, {"float", ""}},
@@ -33,27 +39,30 @@ std::string type_name(const glslang::TType &type, bool is_arrayed)
       {glslang::EbtUint, {"uint", "u"}},
       {glslang::EbtBool, {"bool", "b"}}};
   const auto found = names.find(type.getBasicType());
-  std::string name;
+  DeclaredType result;
   if (type.isStruct()) {
-    name = text_of(type.getTypeName());
+    result.is_struct = true;
+    result.name = text_of(type.getTypeName());
   }
   else if (found == names.end()) {
-    name = "sampler";
-  }
-  else if (type.isMatrix()) {
-    name = fmt::format("{}mat{}x{}", found->second.second, type.getMatrixCols(), type.getMatrixRows());
-  }
-  else if (type.getVectorSize() > 1) {
-    name = fmt::format("{}vec{}", found->second.second, type.getVectorSize());
+    result.name = "sampler";
   }
   else {
-    name = found->second.first;
+    result.scalar = found->second.first;
+    result.name = result.scalar;
+    if (type.isMatrix()) {
+      result.row_count = type.getMatrixRows();
+      result.name = fmt::format("{}mat{}x{}", found->second.second, type.getMatrixCols(), result.row_count);
+    }
+    else if (type.getVectorSize() > 1) {
+      result.vector_size = type.getVectorSize();
+      result.name = fmt::format("{}vec{}", found->second.second, result.vector_size);
+    }
   }
-  const int dimension_count = type.isArray() ? type.getArraySizes()->getNumDims() : 0;
-  for (int i = is_arrayed ? 1 : 0; i < dimension_count; i++) {
-    name += fmt::format("[{}]", type.getArraySizes()->getDimSize(i));
+  for (int i = 0; i < (type.isArray() ? type.getArraySizes()->getNumDims() : 0); i++) {
+    result.array_sizes.push_back(type.getArraySizes()->getDimSize(i));
   }
-  return name;
+  return result;
 }
 
 std::string access_path(const TIntermNode *node)

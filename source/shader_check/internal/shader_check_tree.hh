@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Helpers to read glslang's tree: names, positions, and the values that expressions read, assign and test.
+// Helpers to read glslang's tree, whose headers glslang installs before version 14: names, types, and the values that
+// expressions read, assign and test.
 #pragma once
 
-#include "shader_check_sources.hh"
+#include "shader_check_stage.hh"
 
 #include <glslang/MachineIndependent/localintermediate.h>
 
@@ -14,8 +15,8 @@
 namespace gnomon::shader_check {
 
 [[nodiscard]] std::string text_of(const glslang::TString &text);
-/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, the vertices of a primitive. */
-[[nodiscard]] std::string type_name(const glslang::TType &type, bool is_arrayed = false);
+[[nodiscard]] SourcePosition position_of(const glslang::TSourceLoc &loc, const SourceLines &lines);
+[[nodiscard]] DeclaredType declared_type(const glslang::TType &type);
 
 /**
  * The path of a value: the id of its symbol and the indices of its members, `12.3`. Swizzles and constant array indices

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include "shader_check_stage.hh"
+
+#include "shader_check_function.hh"
+#include "shader_check_tree.hh"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace gnomon::shader_check {
+
+using glslang::TIntermAggregate;
+using glslang::TIntermediate;
+using glslang::TIntermSymbol;
+using glslang::TIntermTraverser;
+using glslang::TType;
+using glslang::TVisit;
+
+namespace {
+
+/** Reads functions, their calls and the globals that they use. */
+class StageReader : public TIntermTraverser {
+ public:
+  std::vector<TIntermAggregate *> functions;
+  std::map<std::string, std::set<std::string>> calls;
+  std::set<long long> used;
+
+  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
+  {
+    if (aggregate->getOp() == glslang::EOpLinkerObjects) {
+      return false;
+    }
+    if (aggregate->getOp() == glslang::EOpFunction) {
+      functions.push_back(aggregate);
+      function_ = text_of(aggregate->getName());
+    }
+    else if (aggregate->getOp() == glslang::EOpFunctionCall) {
+      calls[function_].insert(text_of(aggregate->getName()));
+    }
+    return true;
+  }
+  void visitSymbol(TIntermSymbol *symbol) override
+  {
+    used.insert(symbol->getId());
+  }
+
+ private:
+  std::string function_;
+};
+
+/** The functions that call themselves, directly or through others, by Tarjan's algorithm. */
+class Recursion {
+ public:
+  explicit Recursion(const std::map<std::string, std::set<std::string>> &calls) : calls_(calls)
+  {
+    for (const auto &[name, callees] : calls) {
+      if (!nodes_.contains(name)) {
+        visit(name);
+      }
+    }
+  }
+  bool contains(const std::string &name) const
+  {
+    return found_.contains(name);
+  }
+
+ private:
+  struct Node {
+    std::size_t index;
+    std::size_t low;
+    bool is_open = true;
+  };
+
+  Node &visit(const std::string &name)
+  {
+    Node &node = nodes_.emplace(name, Node{nodes_.size(), nodes_.size()}).first->second;
+    open_.push_back(name);
+    bool is_found = false;
+    if (const auto calls = calls_.find(name); calls != calls_.end()) {
+      for (const std::string &callee : calls->second) {
+        const auto known = nodes_.find(callee);
+        const Node &other = known == nodes_.end() ? visit(callee) : known->second;
+        if (other.is_open) {
+          node.low = std::min(node.low, other.low);
+        }
+        is_found |= callee == name;
+      }
+    }
+    if (node.low == node.index) {
+      is_found |= open_.back() != name;
+      for (bool is_last = false; !is_last;) {
+        const std::string member = open_.back();
+        open_.pop_back();
+        nodes_.at(member).is_open = false;
+        if (is_found) {
+          found_.insert(member);
+        }
+        is_last = member == name;
+      }
+    }
+    return node;
+  }
+
+  const std::map<std::string, std::set<std::string>> &calls_;
+  std::map<std::string, Node> nodes_;
+  std::vector<std::string> open_;
+  std::set<std::string> found_;
+};
+
+void find_recursion(const StageReader &reader, const SourceLines &lines, std::vector<StageFinding> &findings)
+{
+  const Recursion recursion(reader.calls);
+  for (const TIntermAggregate *function : reader.functions) {
+    const std::string name = text_of(function->getName());
+    if (recursion.contains(name)) {
+      findings.push_back({"recursion", position_of(function->getLoc(), lines),
+                          fmt::format("function '{}' calls itself, directly or through others, which GLSL forbids",
+                                      name.substr(0, name.find('('))),
+                          true});
+    }
+  }
+}
+
+void add_members(const TType &type, const std::string &prefix, const std::string &structure, bool is_std140,
+                 const SourceLines &lines, Declaration &block, std::vector<StageFinding> &findings)
+{
+  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
+    const std::string name = prefix + text_of(entry.type->getFieldName());
+    if (entry.type->isStruct()) {
+      add_members(*entry.type, name + (entry.type->isArray() ? "[0]." : "."), text_of(entry.type->getTypeName()),
+                  is_std140, lines, block, findings);
+      continue;
+    }
+    block.members.push_back({name, structure, position_of(entry.loc, lines)});
+    check_array(declared_type(*entry.type), is_std140, block.members.back(), findings);
+  }
+}
+
+/** Sets what an input or output of \a type takes. */
+void set_locations(Declaration &declaration, const TType &type, bool is_arrayed, EShLanguage language)
+{
+  const glslang::TQualifier &qualifier = type.getQualifier();
+  declaration.type = declared_type(type);
+  declaration.is_arrayed = is_arrayed;
+  declaration.location = qualifier.hasLocation() ? int(qualifier.layoutLocation) : -1;
+  const int count = TIntermediate::computeTypeLocationSize(type, language);
+  const int elements = is_arrayed && type.isArray() ? std::max(type.getOuterArraySize(), 1) : 1;
+  declaration.location_count = std::max(count / elements, 1);
+  const bool is_double = type.getBasicType() == glslang::EbtDouble;
+  if (declaration.location_count == 1 && !type.isStruct() && !type.isMatrix() && !is_double) {
+    declaration.component = qualifier.hasComponent() ? int(qualifier.layoutComponent) : 0;
+    declaration.component_count = type.getVectorSize();
+  }
+}
+
+/** Adds an input or output of \a type. The members of a block with locations are connected one by one. */
+void add_varying(Declaration declaration, const TType &type, EShLanguage language, std::vector<Declaration> &list)
+{
+  const bool is_arrayed = type.getQualifier().isArrayedIo(language);
+  declaration.is_captured = type.getQualifier().hasXfbOffset();
+  const auto has_location = [](const glslang::TTypeLoc &entry) { return entry.type->getQualifier().hasLocation(); };
+  if (type.getBasicType() != glslang::EbtBlock || std::ranges::none_of(*type.getStruct(), has_location)) {
+    set_locations(declaration, type, is_arrayed, language);
+    list.push_back(std::move(declaration));
+    return;
+  }
+  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
+    Declaration member = declaration;
+    member.name += "." + text_of(entry.type->getFieldName());
+    member.is_member = true;
+    member.is_captured |= entry.type->getQualifier().hasXfbOffset();
+    set_locations(member, *entry.type, false, language);
+    list.push_back(std::move(member));
+  }
+}
+
+/** Adds an object of the stage's interface, if it is a block, texture, input or output. */
+void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, const SourceLines &lines,
+                     EShLanguage language, StageFacts &facts)
+{
+  const TType &type = symbol.getType();
+  const glslang::TQualifier &qualifier = type.getQualifier();
+  const bool is_block = type.getBasicType() == glslang::EbtBlock;
+  Declaration declaration;
+  declaration.name = text_of(is_block ? type.getTypeName() : symbol.getName());
+  declaration.type = declared_type(type);
+  declaration.is_used = reader.used.contains(symbol.getId());
+  declaration.set = qualifier.hasSet() ? int(qualifier.layoutSet) : 0;
+  declaration.slot = qualifier.hasBinding() ? int(qualifier.layoutBinding) : -1;
+  if (declaration.name.starts_with("gl_") || qualifier.builtIn != glslang::EbvNone) {
+    return;
+  }
+  if (qualifier.isUniformOrBuffer()) {
+    const bool is_buffer = qualifier.storage == glslang::EvqBuffer;
+    declaration.position = lines.find_declaration(declaration.name, is_buffer ? "buffer" : "uniform");
+    if (is_block) {
+      add_members(type, "", "", qualifier.layoutPacking == glslang::ElpStd140, lines, declaration, facts.findings);
+      declaration.is_push_constant = qualifier.isPushConstant() || declaration.name == gpu::push_constant_block_name;
+      declaration.size_bytes = std::uint32_t(TIntermediate::getBlockSize(type));
+      // The slot of push constants depends on the target.
+      declaration.slot = qualifier.isPushConstant() ? -1 : declaration.slot;
+      (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
+    }
+    else if (type.containsOpaque()) {
+      declaration.is_image = type.getBasicType() == glslang::EbtSampler && type.getSampler().isImage();
+      facts.textures.push_back(std::move(declaration));
+    }
+  }
+  else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
+    declaration.position = lines.find_declaration(declaration.name, qualifier.isPipeInput() ? "in" : "out");
+    add_varying(std::move(declaration), type, language, qualifier.isPipeInput() ? facts.inputs : facts.outputs);
+  }
+}
+
+}  // namespace
+
+StageFacts read_tree(const TIntermediate &tree, const SourceLines &lines, bool with_mistakes)
+{
+  StageFacts facts;
+  TIntermNode *root = tree.getTreeRoot();
+  if (root == nullptr) {
+    return facts;
+  }
+  StageReader reader;
+  root->traverse(&reader);
+  if (const TIntermAggregate *objects = tree.findLinkerObjects()) {
+    for (const TIntermNode *object : objects->getSequence()) {
+      if (const TIntermSymbol *symbol = object->getAsSymbolNode()) {
+        add_declaration(*symbol, reader, lines, tree.getStage(), facts);
+      }
+    }
+  }
+  if (!with_mistakes) {
+    return facts;
+  }
+  find_recursion(reader, lines, facts.findings);
+  for (TIntermAggregate *function : reader.functions) {
+    check_function(function, lines, facts.findings);
+  }
+  return facts;
+}
+
+}  // namespace gnomon::shader_check
