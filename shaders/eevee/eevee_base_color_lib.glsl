@@ -7,8 +7,8 @@ layout(location = 3) in vec2 surface_uv;
 layout(binding = BASE_COLOR_SLOT) uniform sampler2D base_color_texture;
 
 /**
- * Reads level 0. Mip-mapped alpha would thin out distant surfaces, while samples of level 0 average to the correct coverage.
- * The result is also the same in every pass, whatever its view.
+ * Reads level 0, so that the result is the same in every pass, whatever its view. Passes of the picture have is_pixel_cut_out of
+ * eevee_mask_lib.glsl.
  */
 bool is_cut_out(float mask_cutoff)
 {

@@ -12,7 +12,7 @@ float gbuffer_depth(vec3 position_ws)
 /** \a ndc: normalized device coordinates. \a depth: a gbuffer_depth(). */
 vec3 gbuffer_position(vec2 ndc, float depth)
 {
-  vec3 place = view.place_middle.xyz + ndc.x * view.place_right.xyz + ndc.y * view.place_up.xyz;
+  vec3 place = view.place_middle + ndc.x * view.place_right.xyz + ndc.y * view.place_up.xyz;
   float scale = view.is_perspective != 0 ? view.depth_origin + depth : 1.0;
   return view.depth_origin_ws + scale * place - depth * view.back_ws;
 }

@@ -51,8 +51,7 @@ struct FlatLamp {
 FlatLamp area_lamp(LightData light, LightShape shape, ShadingFrame frame, Surface surface)
 {
   bool is_rectangle = light.kind == LIGHT_RECTANGLE;
-  vec3 across = cross(shape.axis_x_ws, shape.axis_y_ws);
-  float area = (is_rectangle ? 4.0 : PI) * sqrt(dot(across, across));
+  float area = flat_lamp_area(shape.axis_x_ws, shape.axis_y_ws, is_rectangle);
   return FlatLamp(in_frame(frame, light.position_ws - surface.position_ws), in_frame(frame, shape.axis_x_ws),
                   in_frame(frame, shape.axis_y_ws), is_rectangle ? RECTANGLE_CORNERS : ELLIPSE_CORNERS,
                   1.0 / max(area, 1e-30));

@@ -15,6 +15,11 @@
 #endif
 #ifdef USE_LAMP_SHAPE
 #  include "eevee/eevee_lamp_shape_lib.glsl"
+/** 1: lamps are shaded as points, and may have highlights as a whole. \see eevee_lamp_highlight_lib.glsl */
+SPECIALIZATION_CONSTANT(2) const int LAMP_HIGHLIGHTS = HAS_LAMP_HIGHLIGHTS;
+#  ifdef USE_SPECULAR
+#    define USE_LAMP_HIGHLIGHT
+#  endif
 #endif
 #ifdef USE_MULTISCATTER
 #  include "eevee/eevee_multiscatter_lib.glsl"
@@ -57,7 +62,8 @@ LightShape shape_at(int index)
 #ifdef USE_LIGHT_CLUSTERS
   vec4 a = light_texel(index, 4);
   vec4 b = light_texel(index, 5);
-  return LightShape(a.xyz, a.w, b.xyz, b.w);
+  vec4 c = light_texel(index, 6);
+  return LightShape(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w);
 #else
   return light_shapes.shapes[index];
 #endif
@@ -74,18 +80,19 @@ LightShape shape_at(int index)
 
 /**
  * Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. \a offset: 0 at the receiver,
- * \see ShadowPlace; \a least_gap: \see shadow_cube_visibility. Both are ignored by SHADOW_ESM.
+ * \see ShadowPlace; \a least_gap: \see shadow_cube_visibility. Both are ignored by SHADOW_ESM. \a is_receiver: \see receiver_visibility.
  */
-float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset, float least_gap)
+float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset, float least_gap,
+                       const bool is_receiver)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset, least_gap);
+    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset, least_gap, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(light.shadow_index, surface, to_light, offset, least_gap);
+    return shadow_map_visibility(light.shadow_index, surface, to_light, offset, least_gap, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_ESM
@@ -223,6 +230,13 @@ CenterLight center_light(LightData light, int index, const int lights, Surface s
   return center;
 }
 
+#ifdef USE_LAMP_SHAPE
+#  include "eevee/eevee_shape_light_lib.glsl"
+#endif
+#ifdef USE_LAMP_HIGHLIGHT
+#  include "eevee/eevee_lamp_highlight_lib.glsl"
+#endif
+
 /** Radiance towards the viewer from the light \a index, shaded as a point at its centre, W/(sr m²). */
 vec3 point_radiance(int index, const int lights, MaterialData material, Surface surface)
 {
@@ -255,7 +269,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0);
+  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0, true);
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
@@ -285,12 +299,37 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   points_share = sun_points_share(light, index, material.alpha);
   vec3 highlight = sun_highlight(light, index, material, surface, points_share, true);
 #endif
+#ifdef USE_LAMP_HIGHLIGHT
+  vec3 lamp_radiance = vec3(0.0);
+  float lamp_share = 0.0;
+  HighlightLamp lamp;
+  if (LAMP_HIGHLIGHTS != 0) {
+    lamp = highlight_lamp(light, index, lights, surface);
+    lamp_share = whole_lamp_share(lamp, material.alpha);
+#  ifdef USE_LAYERS
+    if (layers.base_lobe.alphas.x > layers.base_lobe.alphas.y) {
+      lamp_share = 0.0;
+      alpha_min = max(alpha_min, lamp.alpha_points * ANISOTROPIC_ALPHA_PART);
+    }
+#  endif
+    lamp_radiance = lamp_highlight(lamp, material, surface, base_shading, lamp_share, cos_l);
+    points_share += lamp_share;
+  }
+#endif
   vec3 brdf_cos = reflected(material, alpha_min, 1.0 - points_share, surface, center.to_light, cos_l, true);
 #ifdef USE_LAYERS
   float coat_share = 0.0;
 #  if defined(USE_WORLD) && defined(USE_SPECULAR)
   coat_share = sun_points_share(light, index, coat.alpha);
   highlight = layered(highlight, vec3(0.0), sun_highlight(light, index, coat, layers.coat_surface, coat_share, false));
+#  endif
+#  ifdef USE_LAMP_HIGHLIGHT
+  if (LAMP_HIGHLIGHTS != 0) {
+    lamp_share = whole_lamp_share(lamp, coat.alpha);
+    lamp_radiance = layered(lamp_radiance, vec3(0.0),
+                            lamp_highlight(lamp, coat, layers.coat_surface, coat_shading, lamp_share, cos_coat));
+    coat_share += lamp_share;
+  }
 #  endif
   brdf_cos = layered(brdf_cos, cos_l * sheen_brdf(surface, center.to_light, cos_l),
                      reflected(coat, alpha_min, 1.0 - coat_share, layers.coat_surface, center.to_light, cos_coat, false));
@@ -299,12 +338,11 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
 #if defined(USE_WORLD) && defined(USE_SPECULAR)
   radiance += visibility * highlight;
 #endif
+#ifdef USE_LAMP_HIGHLIGHT
+  radiance += LAMP_HIGHLIGHTS != 0 ? visibility * lamp_radiance : vec3(0.0);
+#endif
   return radiance;
 }
-
-#ifdef USE_LAMP_SHAPE
-#  include "eevee/eevee_shape_light_lib.glsl"
-#endif
 
 /** Index of the light number \a i of those that a loop visits. */
 int light_index(int i, const int lights)
@@ -329,7 +367,7 @@ vec3 lights_radiance(int first, int end, const int lights, MaterialData material
     do {
       int index = light_index(i, lights);
 #ifdef USE_LAMP_SHAPE
-      if (shape_at(index).extent > 0.0) {
+      if (LAMP_HIGHLIGHTS == 0 && shape_at(index).extent > 0.0) {
         sum += shape_radiance(index, lights, material, surface);
       }
       else

@@ -7,8 +7,10 @@
 #    include "eevee/eevee_normal_map_lib.glsl"
 #  endif
 #elif defined(USE_BASE_COLOR_TEXTURE)
-#  include "draw/draw_view_lib.glsl"
 #  include "eevee/eevee_base_color_lib.glsl"
+#endif
+#if (defined(USE_FULL_MATERIAL) && !defined(USE_SURFACE_FUNCTION)) || defined(USE_BASE_COLOR_TEXTURE)
+#  include "eevee/eevee_mask_lib.glsl"
 #endif
 #ifdef USE_LIGHT
 #  include "eevee/eevee_light_lib.glsl"
@@ -89,7 +91,7 @@ void main()
 #endif
 #if (defined(USE_FULL_MATERIAL) && !defined(USE_SURFACE_FUNCTION)) || defined(USE_BASE_COLOR_TEXTURE)
   // Another surface may have the same depth, so the depth test alone does not reject a masked fragment.
-  if (is_cut_out(materials[surface_material].mask_cutoff)) {
+  if (is_pixel_cut_out(materials[surface_material].mask_cutoff)) {
     discard;
   }
 #endif

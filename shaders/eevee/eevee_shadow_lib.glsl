@@ -22,12 +22,18 @@ struct ReceiverPlane {
   float least_depth;
 };
 
+/** Depths of the four texels at \a corner, in the order of textureGather. */
+vec4 stored_depths(sampler2DArray depths, int layer, vec2 corner)
+{
+  // Gather at the corner that the four texels share, so that rounding cannot select other texels.
+  return textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
+}
+
 /** Weighted sum of the lit ones of the four texels at \a corner. \a size_px: edge of the shadow within its layer. */
 float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 corner, vec2 columns, vec2 rows)
 {
   corner = clamp(corner, vec2(0.0), vec2(max(size_px - 2, 0)));
-  // Gather at the corner that the four texels share, so that rounding cannot select other texels.
-  vec4 stored = textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
+  vec4 stored = stored_depths(depths, layer, corner);
   vec4 depths_of_plane = plane_depths(plane.depth, plane.slope, corner - plane.texel);
   return weighted_texels(texels_lit(stored, max(depths_of_plane, vec4(plane.least_depth))), columns, rows);
 }
@@ -41,7 +47,81 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
                      vec2(1.0 - fraction.y, fraction.y));
 }
 
-float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane)
+/** Error of a caster that is continued to the receiver, in texels. */
+const float CONTACT_ERROR_TEXELS = 0.1;
+
+/**
+ * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
+ * that from the texel \a outer to \a height and that to \a inner. Heights that are not above 0 are of no caster. 0: unknown.
+ */
+float caster_slope(float outer, float height, float inner)
+{
+  float from_outer = height - outer;
+  float to_inner = inner - height;
+  float slope = outer > 0.0 ? from_outer : 0.0;
+  return inner > 0.0 && (outer <= 0.0 || abs(to_inner) < abs(from_outer)) ? to_inner : slope;
+}
+
+/**
+ * Visibility of the receiver itself: bilinear blend of the four texels around it, except at contacts.
+ *
+ * A caster that touches the receiver ends between two texels, of which one holds it. The other one holds what is beyond the contact,
+ * such as the outer part of a wall which passes through a floor, or nothing. It is not beside the receiver. The caster is therefore
+ * continued from its texel towards the others, along its own slope. Where it ends at the receiver's plane before a texel, a receiver on
+ * its side of the end is in shadow, and a receiver beyond the end is lit. Edges of casters in front of the plane are blended.
+ */
+float receiver_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
+{
+  vec2 last = vec2(max(size_px - 2, 0));
+  vec2 corner = clamp(floor(plane.texel), vec2(0.0), last);
+  vec2 fraction = plane.texel - floor(plane.texel);
+  vec4 stored = stored_depths(depths, layer, corner);
+  vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
+  vec4 lit = texels_lit(stored, receiver);
+  float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
+  // The direction towards the casters, and the four texels one further there.
+  vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
+  vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;
+  vec4 further = stored_depths(depths, layer, corner + moved);
+  receiver = max(receiver, vec4(0.0));
+  vec4 height = stored - receiver;
+  further -= receiver + dot(moved, plane.slope);
+  // Mirrored so that the casters are at the upper right, y. Two casters are at the right, y and z.
+  bool is_straight = side.x * side.y == 0.0;
+  if (side.x < 0.0) {
+    height = height.yxwz;
+    further = further.yxwz;
+    fraction.x = 1.0 - fraction.x;
+  }
+  if (side.y < 0.0) {
+    height = height.wzyx;
+    further = further.wzyx;
+    fraction.y = 1.0 - fraction.y;
+  }
+  if (side.x == 0.0) {
+    height = height.zyxw;
+    further = further.zyxw;
+    fraction = fraction.yx;
+  }
+  vec2 inwards = 1.0 - fraction;
+  // Slopes to the left in the upper and in the lower row, and from the upper to the lower one.
+  float upper = caster_slope(is_straight ? further.y : further.z, height.y, height.x);
+  float down = is_straight ? height.z - height.y : caster_slope(further.x, height.y, height.z);
+  float lower = is_straight ? caster_slope(further.z, height.z, height.w) : upper;
+  vec4 continued = height.y + vec4(upper, 0.0, down, down + lower);
+  float at_receiver = height.y + mix(down + lower * inwards.x, upper * inwards.x, fraction.y);
+  float error = CONTACT_ERROR_TEXELS * (max(abs(upper), abs(lower)) + (is_straight ? 0.0 : abs(down)));
+  vec4 is_lit = step(height, vec4(0.0));
+  vec4 open = is_lit * step(vec4(1e-30), continued);
+  bool is_edge = side != vec2(0.0);
+  if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
+    blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
+  }
+  return is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
+}
+
+float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane,
+                          const bool is_receiver)
 {
 #ifdef USE_SHADOW_PCF
   if (filter_kind == SHADOW_FILTER_PCF) {
@@ -66,7 +146,8 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
     return sum / float(PCF_TAPS);
   }
 #endif
-  return bilinear_texels(depths, layer, size_px, plane, plane.texel);
+  return is_receiver ? receiver_visibility(depths, layer, size_px, plane) :
+                       bilinear_texels(depths, layer, size_px, plane, plane.texel);
 }
 
 /**
@@ -145,14 +226,18 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   return place;
 }
 
-/** \a least_gap: of the casters that count; 0: all. Not for suns. \see eevee_penumbra_lib.glsl */
-float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset, float least_gap)
+/**
+ * \a least_gap: of the casters that count; 0: all. Not for suns. \see eevee_penumbra_lib.glsl. \a is_receiver: the lookup is at the
+ * receiver itself, \see receiver_visibility.
+ */
+float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset, float least_gap,
+                             const bool is_receiver)
 {
   ShadowCubeData cube = shadow.cubes[index];
   ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
   // A depth is the quotient of the near plane's distance and the caster's.
   place.plane.least_depth = max(place.plane.least_depth, least_gap > 0.0 ? place.receiver_depth * (1.0 + least_gap) : 0.0);
-  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane)
+  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane, is_receiver)
                           : 1.0;
 }
 
@@ -207,13 +292,14 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
 }
 
 /** Visibility from one map. \a coverage: \see map_coverage. \a least_gap: \see shadow_cube_visibility. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, float least_gap, out float coverage)
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, float least_gap, out float coverage,
+                         const bool is_receiver)
 {
   ShadowPlace place = map_place(map, surface, to_light, offset, coverage);
   if (place.is_covered && least_gap > 0.0) {
     place.plane.least_depth = max(place.plane.least_depth, place.receiver_depth * (1.0 + least_gap));
   }
-  return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane) : 1.0;
+  return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane, is_receiver) : 1.0;
 }
 
 /** Change of depth for each metre towards a sun. */
@@ -261,7 +347,7 @@ vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_ligh
 }
 
 /** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */
-float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset, float least_gap)
+float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset, float least_gap, const bool is_receiver)
 {
   int count = shadow.maps[first].cascade_count;
   float visibility = 0.0;
@@ -272,7 +358,7 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offs
     // The test is at the end as in lights_radiance.
     do {
       float coverage;
-      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, least_gap, coverage);
+      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, least_gap, coverage, is_receiver);
       float share = cascade_share(i == count - 1, coverage);
       visibility += open * share * lit;
       open *= 1.0 - share;

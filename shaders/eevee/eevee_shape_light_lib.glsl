@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of lamps that are shaded as a whole. Included by eevee_light_lib.glsl, after what both read.
+// Light of whole lamps, and lamps that are shaded as a whole. Included by eevee_light_lib.glsl, after what both read.
 
 /** Values at the shaded point that are the same for all lamps that are shaded as a whole. */
 struct ShapeShading {
@@ -39,7 +39,8 @@ void shade_shapes(MaterialData material, Surface surface)
 float shape_visibility(LightData light, const int lights, LightShape shape, Surface surface, CenterLight center)
 {
   if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
-    return light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0);
+    // It reads neither a cube nor a map. llvmpipe evaluates their lookups all the same, so the short one is given.
+    return light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0, false);
   }
   vec3 axis_x = shape.axis_x_ws;
   vec3 axis_y = shape.axis_y_ws;
@@ -89,8 +90,7 @@ ShapeLight shape_light(LightData light, const int lights, LightShape shape, Surf
 #endif
     return result;
   }
-  // The limits prevent an overflow. At a distance of 1e-9 radii, the lamp already fills the half space.
-  float tangent = min(shape.extent * inversesqrt(max(center.distance_sq, 1e-30)), 1e9);
+  float tangent = round_lamp_tangent(shape.extent, center.distance_sq);
   result.lamp = round_lamp(center.to_light, tangent, center.irradiance, frame);
   float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
   result.cosine = disk_cosine(max(sine_sq, 1e-30), dot(frame.z_ws, center.to_light));
@@ -150,7 +150,7 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
 #ifdef USE_SHADOW
   float visibility = shape_visibility(light, lights, shape, surface, center);
 #else
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0);
+  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0, true);
 #endif
   if (visibility <= 0.0) {
     return vec3(0.0);

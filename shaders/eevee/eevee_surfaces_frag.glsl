@@ -8,6 +8,9 @@
 #elif defined(USE_BASE_COLOR_TEXTURE)
 #  include "eevee/eevee_base_color_lib.glsl"
 #endif
+#if (defined(USE_FULL_MATERIAL) && !defined(USE_SURFACE_FUNCTION)) || defined(USE_BASE_COLOR_TEXTURE)
+#  include "eevee/eevee_mask_lib.glsl"
+#endif
 #include "eevee/eevee_surface_frag_lib.glsl"
 #ifdef USE_SURFACE_FUNCTION
 #  include "eevee/eevee_surface_function_lib.glsl"
@@ -49,7 +52,7 @@ void main()
     discard;
   }
 #elif defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
-  if (is_cut_out(materials[surface_material].mask_cutoff)) {
+  if (is_pixel_cut_out(materials[surface_material].mask_cutoff)) {
     discard;
   }
 #endif

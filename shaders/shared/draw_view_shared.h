@@ -28,7 +28,9 @@ struct ViewData {
    * In its xyz, vectors of world space across the view axis, at a distance of 1 from the eye (orthographic: at any). A pixel with the
    * normalized device coordinates (x, y) is at place_middle + x * place_right + y * place_up.
    */
-  vec4 place_middle;
+  vec3 place_middle;
+  /** In [0, 1), of the sample. \see eevee_mask_lib.glsl */
+  float mask_shift;
   vec4 place_right;
   vec4 place_up;
 };

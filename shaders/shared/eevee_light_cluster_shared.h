@@ -7,8 +7,8 @@
 
 SHARED_BEGIN
 
-/** Texels of a light in `light_texture`: four rows of LightData, with integers as floats, and two of LightShape. */
-#define LIGHT_TEXELS 6
+/** Texels of a light in `light_texture`: four rows of LightData, with integers as floats, and three of LightShape. */
+#define LIGHT_TEXELS 7
 /** The largest number of lights. Devices whose texture buffers are smaller have fewer. */
 #define LIGHT_COUNT_MAX 65536
 

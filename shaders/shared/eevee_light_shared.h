@@ -22,6 +22,11 @@ SHARED_BEGIN
  * points are assumed to be as dense in all directions as in that of the sampled one.
  */
 #define SURFACE_LOBE_POINTS 12.0f
+/**
+ * With several samples, a specular lobe which contains fewer than this number of a lamp's points of all samples reflects the whole
+ * lamp, in closed form, times the visibility of the point. Other lobes reflect the points.
+ */
+#define HIGHLIGHT_LOBE_POINTS 64.0f
 
 /** LightData::shadow_kind. */
 #define SHADOW_NONE 0
@@ -89,15 +94,23 @@ struct LightShape {
   float extent;
   /** As axis_x_ws, for the other axis. */
   vec3 axis_y_ws;
-  float _pad0;
+  /** With highlight_extent: HIGHLIGHT_LOBE_POINTS divided by the number of samples. */
+  float highlight_points_share;
+  /** With highlight_extent: centre of the lamp, world space, metres; of a sun, the unit vector to its centre. */
+  vec3 center_ws;
+  /**
+   * Above 0: the lamp is shaded as a point, and its highlights on smooth surfaces as a whole. The value is that of `extent` for
+   * a lamp that is shaded as a whole.
+   */
+  float highlight_extent;
 };
-SHARED_ASSERT_SIZE(LightShape, 32)
+SHARED_ASSERT_SIZE(LightShape, 48)
 
 /** Content of `light_shape_block`: one entry for each light of `light_block`, in the same order. */
 struct LightShapeBlock {
   LightShape shapes[LIGHT_MAX];
 };
-SHARED_ASSERT_SIZE(LightShapeBlock, LIGHT_MAX * 32)
+SHARED_ASSERT_SIZE(LightShapeBlock, LIGHT_MAX * 48)
 
 /** Smaller blends are treated as hard edges, so that the inverse stays finite. */
 SHARED_CONSTANT float SPOT_BLEND_MIN = 1e-6f;

@@ -15,6 +15,41 @@ SHARED_BEGIN
 #define ELLIPSE_CORNERS 16
 #define RECTANGLE_CORNERS 4
 
+/** Radius divided by distance, of a lamp of the radius \a extent; of a sun, with a distance of 1, the tangent itself. */
+SHARED_FUNCTION float round_lamp_tangent(float extent, float distance_sq)
+{
+  // The limits prevent an overflow. At a distance of 1e-9 radii, the lamp already fills the half space.
+  return min(extent * (1.0f / sqrt(max(distance_sq, 1e-30f))), 1e9f);
+}
+
+/** Solid angle of a round lamp, sr. */
+SHARED_FUNCTION float round_lamp_solid_angle(float tangent)
+{
+  return 2.0f * PI * (1.0f - 1.0f / sqrt(1.0f + tangent * tangent));
+}
+
+/** Area of a rectangle, or of an ellipse, with these half axes. */
+SHARED_FUNCTION float flat_lamp_area(vec3 axis_x, vec3 axis_y, bool is_rectangle)
+{
+  vec3 across = cross(axis_x, axis_y);
+  return (is_rectangle ? 4.0f : PI) * sqrt(dot(across, across));
+}
+
+/** About the solid angle of a flat lamp, sr. \a area: its area times the cosine of the angle at which it is seen. */
+SHARED_FUNCTION float flat_lamp_solid_angle(float area, float distance_sq)
+{
+  return area / (max(distance_sq, 1e-30f) + area * (0.5f * INV_PI));
+}
+
+/**
+ * Alpha of a lobe that contains HIGHLIGHT_LOBE_POINTS points of a lamp. Its solid angle is about 4 π alpha². \a points_share:
+ * LightShape::highlight_points_share. \a solid_angle: of the lamp.
+ */
+SHARED_FUNCTION float highlight_alpha(float points_share, float solid_angle)
+{
+  return sqrt(points_share * solid_angle * (0.25f * INV_PI));
+}
+
 /** Angle of a direction whose cosine is \a x, radians. \a x in [-1, 1]. */
 SHARED_FUNCTION float angle_of_cosine(float x)
 {

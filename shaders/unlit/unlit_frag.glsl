@@ -5,8 +5,10 @@
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_lib.glsl"
 #elif defined(USE_BASE_COLOR_TEXTURE)
-#  include "draw/draw_view_lib.glsl"
 #  include "eevee/eevee_base_color_lib.glsl"
+#endif
+#if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
+#  include "eevee/eevee_mask_lib.glsl"
 #endif
 #ifdef USE_DEPTH_CAMERA
 #  include "unlit/unlit_depth_camera_lib.glsl"
@@ -77,7 +79,7 @@ void main()
   radiance *= opacity();
 #endif
 #if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
-  if (is_cut_out(materials[surface_material].mask_cutoff)) {
+  if (is_pixel_cut_out(materials[surface_material].mask_cutoff)) {
     discard;
   }
 #endif

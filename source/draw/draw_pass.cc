@@ -158,6 +158,18 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
+bool ShadingGroup::is_current(const gpu::Device &device) const
+{
+  return std::ranges::all_of(bindings_, [&](const Binding &binding) {
+    if (const auto *range = std::get_if<gpu::BufferRange>(&binding.value)) {
+      return device.find(gpu::ResourceKind::Buffer, range->buffer) != nullptr;
+    }
+    const auto *texture = std::get_if<TextureBinding>(&binding.value);
+    return !texture || (device.find(gpu::ResourceKind::Texture, texture->texture) &&
+                        device.find(gpu::ResourceKind::Sampler, texture->sampler));
+  });
+}
+
 inline void ShadingGroup::append(const Call &call, bool may_extend, gpu::CommandList &list) const
 {
   std::uint32_t instance = call.object;
@@ -276,6 +288,12 @@ void Pass::clear()
   order_.reset();
 }
 
+static gpu::State with_other_front(gpu::State state)
+{
+  return has(state, gpu::State::FrontClockwise) ? without(state, gpu::State::FrontClockwise)
+                                                : state | gpu::State::FrontClockwise;
+}
+
 RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, const VisibleObjects &visible,
                                 gpu::CommandList &list, gpu::State without) const
 {
@@ -292,7 +310,8 @@ RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, con
     return counts;
   }
   list.set_shader(group.shader_.id());
-  list.set_state(gpu::without(state_ | group.state_, without));
+  const gpu::State state = gpu::without(state_ | group.state_, without);
+  list.set_state(view.is_mirrored() ? with_other_front(state) : state);
   group.record_bindings(list);
   GNOMON_ASSERT(drawn_calls == 0 || !objects_ || objects_->buffer(), "pass '{}': its objects are not uploaded", name_);
   ShadingGroup::record_draws(first_call, first_instanced, group.object_buffer(), list);
@@ -325,6 +344,11 @@ RecordCounts Pass::record(const View &view, VisibleObjects &visible, gpu::Comman
     counts.culled += of_group.culled;
   }
   return counts;
+}
+
+bool Pass::is_current(const gpu::Device &device) const
+{
+  return std::ranges::all_of(groups_, [&](const ShadingGroup &group) { return group.is_current(device); });
 }
 
 std::string Pass::serialize(const gpu::Device &device) const

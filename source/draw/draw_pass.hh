@@ -20,7 +20,8 @@
  * A pass is built once, as plain data, on any thread. Pass::record then appends it to a gpu::CommandList for a View,
  * any number of times. Binding names are resolved when they are bound, not when they are recorded. A binding is either
  * **by value** (copied when it is bound) or **by reference** (`_ref`: the group keeps a pointer and reads the value at
- * each Pass::record). Bindings by reference allow one pass to draw, for example, the shadow maps of many lamps.
+ * each Pass::record). Bindings by reference allow one pass to draw, for example, the shadow maps of many lamps. A pass
+ * knows what it has bound by value: Pass::is_current.
  */
 namespace gnomon::draw {
 
@@ -170,6 +171,8 @@ class ShadingGroup {
   /** The entry of the constant \a name, created by the first call; nullptr if the shader has no such constant. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
+  /** \see Pass::is_current */
+  [[nodiscard]] bool is_current(const gpu::Device &device) const;
   void add_call(const gpu::BatchRange &batch, ObjectIndex object, std::uint32_t volume);
   [[nodiscard]] bool is_visible(const Call &call, const View &view, const VisibleObjects &visible) const
   {
@@ -253,6 +256,11 @@ class Pass {
   {
     return groups_.empty();
   }
+  /**
+   * Whether all buffers, textures and samplers that were bound by value still exist. Otherwise the pass must be built
+   * again. No other resource gets their ids.
+   */
+  [[nodiscard]] bool is_current(const gpu::Device &device) const;
   /** Text of the groups and calls. \a device supplies the names of resources. Does not depend on the backend. */
   [[nodiscard]] std::string serialize(const gpu::Device &device) const;
 

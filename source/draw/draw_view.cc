@@ -73,7 +73,7 @@ glm::mat4 perspective(float half_width, float half_height, float near, float far
 
 glm::mat4 orthographic(float half_width, float half_height, float near, float far)
 {
-  GNOMON_ASSERT(half_width > 0.0F && half_height > 0.0F && far > near, "half size {}x{}, near {}, far {}", half_width,
+  GNOMON_ASSERT(half_width != 0.0F && half_height != 0.0F && far > near, "half size {}x{}, near {}, far {}", half_width,
                 half_height, near, far);
   glm::mat4 clip_from_view(1.0F);
   clip_from_view[0][0] = 1.0F / half_width;

@@ -51,6 +51,11 @@ class View {
   {
     return clip_from_view_[3][3] == 0.0F;
   }
+  /** Whether the picture is a mirror image, in which the vertices of front sides are clockwise. */
+  [[nodiscard]] bool is_mirrored() const
+  {
+    return clip_from_view_[0][0] * clip_from_view_[1][1] < 0.0F;
+  }
   /**
    * Left, right, bottom, top, near and far plane. A point is inside if dot(plane, (point, 1)) >= 0. The normals are
    * unit vectors. An infinite far plane is (0, 0, 0, 1), so that all points are inside.
@@ -77,7 +82,10 @@ class View {
  */
 [[nodiscard]] glm::mat4 perspective(float half_width, float half_height, float near, float far);
 
-/** Orthographic projection with reversed depth: 1 at the near plane, 0 at the far. \pre half sizes > 0, far > near */
+/**
+ * Orthographic projection with reversed depth: 1 at the near plane, 0 at the far. A negative half size mirrors.
+ * \pre half sizes are not 0, far > near
+ */
 [[nodiscard]] glm::mat4 orthographic(float half_width, float half_height, float near, float far);
 
 }  // namespace gnomon::draw

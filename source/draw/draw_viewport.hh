@@ -230,13 +230,16 @@ class Viewport {
     return draws_until_final_;
   }
 
-  /** The data of \a engine. The first call creates it; remove_engine destroys it. \pre Data is the same in each call */
-  template <typename Data>
-  Data &engine_data(const Engine &engine)
+  /**
+   * The data of \a engine. The first call creates it from \a inputs; remove_engine destroys it.
+   * \pre Data is the same in each call
+   */
+  template <typename Data, typename... Inputs>
+  Data &engine_data(const Engine &engine, Inputs &&...inputs)
   {
     std::unique_ptr<EngineViewportData> &data = engines_[engine.id()].data;
     if (!data) {
-      data = std::make_unique<Data>();
+      data = std::make_unique<Data>(std::forward<Inputs>(inputs)...);
     }
     return static_cast<Data &>(*data);
   }

@@ -109,7 +109,7 @@ class Importer {
         options_(options),
         progress_(progress),
         warnings_(std::move(warnings)),
-        meshes_(file, options.texture_size_max, progress, warnings_, scene_)
+        meshes_(file, options, progress, warnings_, scene_)
   {
   }
 

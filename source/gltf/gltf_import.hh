@@ -70,10 +70,20 @@ struct ImportOptions {
   std::string variant{};
   /**
    * Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. After
-   * the reduction an edge may have 16384 texels, and all images together 2^29. Before it, an image may have 2^28
-   * texels, and all together 2^32. Images beyond are replaced by stand-ins, with a warning.
+   * the reduction an edge may have 16384 texels. Before it, an image may have 2^28 texels, and all together 2^32.
+   * Images beyond are replaced by stand-ins, with a warning.
    */
   std::uint32_t texture_size_max = 0;
+  /**
+   * Most bytes of all images, with 4 for each texel after the reduction: 32 images of 4096x4096. A few kilobytes may be
+   * compressed texels of gigabytes. Images beyond are replaced by stand-ins, with a warning.
+   */
+  std::size_t image_bytes_max = std::size_t(1) << 31U;
+  /**
+   * Most vertices and indices that are read for all meshes together. Meshes may share bytes of the file, so that its
+   * size does not limit them. A file with more is refused.
+   */
+  std::size_t element_count_max = std::size_t(1) << 28U;
   /**
    * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
    * below it, after links are resolved. The scene's own file may be elsewhere. Empty: files may be anywhere.
@@ -110,6 +120,19 @@ constexpr void ImportOptions::for_each_property(Visit &&visit)
                                                     .zero = "no limit",
                                                     .sentence = "Most texels along an edge of an image of a material; "
                                                                 "larger ones are reduced. 0: no limit."}));
+  visit(property(&ImportOptions::image_bytes_max,
+                 {.name = "image_bytes_max",
+                  .option = "image-memory",
+                  .unit = "bytes",
+                  .min = 1 << 20U,
+                  .max = double(std::uint64_t(1) << 40U),
+                  .sentence = "Most memory of all images; those beyond are replaced by stand-ins."}));
+  visit(property(&ImportOptions::element_count_max,
+                 {.name = "element_count_max",
+                  .option = "vertices-max",
+                  .min = 1,
+                  .max = double(std::uint64_t(1) << 40U),
+                  .sentence = "Most vertices and indices of all meshes; a file with more is refused."}));
   visit(
       property(&ImportOptions::lamp_units,
                {.name = "lamp_units",

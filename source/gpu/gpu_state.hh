@@ -17,7 +17,7 @@ enum class State : std::uint32_t {
   DepthEqual = 1U << 3,
   CullBack = 1U << 4,
   CullFront = 1U << 5,
-  /** Front faces have clockwise vertices. For objects whose matrix mirrors. */
+  /** Front faces have clockwise vertices. For objects whose matrix mirrors, or for views that mirror. */
   FrontClockwise = 1U << 6,
   /** Blending: stored + colour. */
   BlendAdd = 1U << 7,

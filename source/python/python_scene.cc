@@ -384,7 +384,9 @@ void define_scene(py::module_ &module)
       "Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
       "the part that is done, 0 to 1; what it raises ends the import. `only_below`: a folder; files that the scene "
       "names elsewhere are refused. `texture_size_max`: most texels along an edge of an image of a material; larger "
-      "ones are reduced. `lamp_units`: \"raw\" for files that were exported unitless, \"auto\" to find out. Raises "
+      "ones are reduced. `image_bytes_max`: most bytes of all images. `element_count_max`: most vertices and indices "
+      "of "
+      "all meshes. `lamp_units`: \"raw\" for files that were exported unitless, \"auto\" to find out. Raises "
       "FileError.");
 }
 

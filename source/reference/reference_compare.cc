@@ -46,6 +46,7 @@ struct ReceiverComparer {
     return visibility(tracer, receiver, lamp, settings.sample_count, mixed(settings.seed) ^ key).mean;
   }
   [[nodiscard]] std::optional<Receiver> moved(const Receiver &receiver, const glm::dvec3 &across) const;
+  [[nodiscard]] bool is_open_between(const Receiver &receiver, const Receiver &there) const;
   [[nodiscard]] double edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t key) const;
   [[nodiscard]] ReceiverResult compare(const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws, double engine,
                                        std::uint64_t key) const;
@@ -85,6 +86,19 @@ std::optional<Receiver> ReceiverComparer::moved(const Receiver &receiver, const 
                   surface.error_m};
 }
 
+/**
+ * Whether no surface is between two receivers, on their shaded sides. Light beyond a wall that stands on the receiver's
+ * surface is not beside the receiver, however near it is.
+ */
+bool ReceiverComparer::is_open_between(const Receiver &receiver, const Receiver &there) const
+{
+  const double width = glm::distance(receiver.position_ws, there.position_ws);
+  const double above = std::max(1e-3 * width, 4.0 * (receiver.error_m + there.error_m));
+  const glm::dvec3 from = receiver.position_ws + above * receiver.normal_ws;
+  const glm::dvec3 to = there.position_ws + above * there.normal_ws;
+  return !tracer.closest({from, to - from, 0.0, 1.0}, Faces::All);
+}
+
 double ReceiverComparer::edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t key) const
 {
   const double texel_m = settings.texel_size_m ? settings.texel_size_m(receiver.position_ws) : 0.0;
@@ -101,7 +115,7 @@ double ReceiverComparer::edge_offset(const Receiver &receiver, bool is_lit, std:
       const double angle = 2.0 * std::numbers::pi * double(i) / ring_directions;
       const glm::dvec3 across = ring * texel_m * (std::cos(angle) * right + std::sin(angle) * up);
       const std::optional<Receiver> there = moved(receiver, across);
-      if (there && (exact_visibility(*there, key) > 0.5) == is_lit) {
+      if (there && (exact_visibility(*there, key) > 0.5) == is_lit && (!is_lit || is_open_between(receiver, *there))) {
         return ring;
       }
     }

@@ -69,7 +69,8 @@ struct VisibilityError {
  * make the receiver right. To find it, the receiver is moved across the light by the radius of a ring, in 16
  * directions, and then along the light back onto its surface. The offset is the radius of the first ring that contains
  * a position whose exact visibility agrees with the engine. The surface is the nearest triangle along the light, if its
- * distance from the receiver's plane is at most the radius of the ring, and otherwise the plane itself.
+ * distance from the receiver's plane is at most the radius of the ring, and otherwise the plane itself. A lit position
+ * does not count if a surface separates it from the receiver: light through the joint of a floor and a wall is a leak.
  *
  * \throws std::invalid_argument if the spans differ in length.
  */

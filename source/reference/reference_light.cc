@@ -97,13 +97,17 @@ class CameraRays {
         far_(camera.far > camera.near ? double(camera.far) : std::numeric_limits<double>::infinity())
   {
     const double image_aspect = double(size_px.x) / double(size_px.y);
-    half_size_.y = is_perspective_ ? std::tan(0.5 * double(camera.vertical_angle)) : double(camera.half_height);
-    const double frame_aspect = !is_perspective_       ? double(camera.half_width) / double(camera.half_height)
+    half_size_.y =
+        is_perspective_ ? std::tan(0.5 * double(camera.vertical_angle)) : std::abs(double(camera.half_height));
+    const double frame_aspect = !is_perspective_ ? std::abs(double(camera.half_width) / double(camera.half_height))
                                 : camera.aspect > 0.0F ? double(camera.aspect)
                                                        : image_aspect;
     // The camera's frame is centred in the image and completely visible.
     half_size_.y *= std::max(frame_aspect / image_aspect, 1.0);
     half_size_.x = half_size_.y * image_aspect;
+    if (!is_perspective_) {
+      half_size_ = {std::copysign(half_size_.x, camera.half_width), std::copysign(half_size_.y, camera.half_height)};
+    }
   }
 
   /** \a at_px: relative to the lower left corner of the image. The ray's t is the depth along the view axis, metres. */

@@ -28,9 +28,9 @@ void check(const scene::PlacedCamera &camera)
       refuse(fmt::format("near plane {} is not above 0", camera.near));
     }
   }
-  else if (!(camera.half_width > 0.0F && camera.half_height > 0.0F && std::isfinite(camera.half_width) &&
+  else if (!(camera.half_width != 0.0F && camera.half_height != 0.0F && std::isfinite(camera.half_width) &&
              std::isfinite(camera.half_height))) {
-    refuse(fmt::format("half size {}x{} is not above 0", camera.half_width, camera.half_height));
+    refuse(fmt::format("half size {}x{} is 0 or not finite", camera.half_width, camera.half_height));
   }
   if (!(std::isfinite(camera.near) && !std::isnan(camera.far) && camera.aspect >= 0.0F)) {
     refuse(fmt::format("near plane {}, far plane {} or aspect ratio {} is not a number that can be drawn", camera.near,
@@ -45,8 +45,9 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
   const float image_aspect = float(size_px.x) / float(size_px.y);
   // The float nearest to π exceeds π, so the tangent of its half would be negative.
   constexpr float angle_max = 3.1415F;
-  float half_height = is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, angle_max)) : camera.half_height;
-  const float frame_aspect = !is_perspective        ? camera.half_width / camera.half_height
+  float half_height =
+      is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, angle_max)) : std::abs(camera.half_height);
+  const float frame_aspect = !is_perspective        ? std::abs(camera.half_width / camera.half_height)
                              : camera.aspect > 0.0F ? camera.aspect
                                                     : image_aspect;
   if (image_aspect < frame_aspect) {
@@ -65,7 +66,9 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
   else {
     // An orthographic projection of infinite depth has no finite matrix. Use a depth of a million half widths instead.
     const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, infinite));
-    clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::isinf(far) ? depth_max : far);
+    clip_from_view =
+        draw::orthographic(std::copysign(half_width, camera.half_width), std::copysign(half_height, camera.half_height),
+                           camera.near, std::isinf(far) ? depth_max : far);
   }
   glm::dmat4 world_from_camera = camera.world_from_camera;
   world_from_camera[3] -= glm::dvec4(origin_ws, 0.0);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_images.hh"
 
+#include "render_materials.hh"
+
 #include <algorithm>
 #include <bit>
 
@@ -58,7 +60,7 @@ bool is_seen(const scene::Image &image)
   return false;
 }
 
-gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::ImageUse use)
+gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::ImageUse use, float mask_cutoff)
 {
   gpu::Texture texture =
       device.create_texture({.name = image.name,
@@ -67,8 +69,8 @@ gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::I
                              .height = int(image.height),
                              .mip_levels = int(std::bit_width(std::max(image.width, image.height)))});
   // Rows need not be reversed: v = 0 is the first row both in the scene and on the device.
-  if (use == scene::ImageUse::Coverage && is_seen(image)) {
-    const std::vector<std::uint8_t> levels = coverage_levels(image);
+  if (use == scene::ImageUse::Mask || (use == scene::ImageUse::Coverage && is_seen(image))) {
+    const std::vector<std::uint8_t> levels = coverage_levels(image, mask_cutoff);
     device.upload(texture, 0, std::as_bytes(std::span(levels)));
     return texture;
   }
@@ -82,17 +84,17 @@ gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::I
 }  // namespace
 
 Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle,
-                           scene::ImageUse use)
+                           scene::ImageUse use, float mask_cutoff)
 {
   if (!is_drawable(scene, handle)) {
     if (!white_) {
-      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, scene::ImageUse::Data);
+      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, scene::ImageUse::Data, 0.0F);
     }
     return {white_, sampler(device, {}, false)};
   }
   const scene::Texture &texture = scene.textures()[handle];
   const scene::Revision content = scene.images().revision(texture.image, scene::Image::Aspect::Content);
-  std::vector<Entry> &entries = entries_[std::size_t(use)];
+  std::vector<Entry> &entries = entries_[{use, mask_cutoff}];
   if (entries.size() <= texture.image.index) {
     entries.resize(scene.images().index_end());
   }
@@ -101,7 +103,8 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
   const std::uint64_t resource = host_textures_.resource_revision(texture.image);
   if (!entry.texture || entry.handle != texture.image || entry.content != content || entry.host_resource != resource) {
     const scene::Image &image = scene.images()[texture.image];
-    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host)) : make_image(device, image, use),
+    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host))
+                  : make_image(device, image, use, mask_cutoff),
              texture.image, content, resource};
   }
   // A host's texture of one level is incomplete for a sampler that reads others, and looked up as black.
@@ -130,26 +133,31 @@ const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &t
 
 const gpu::Texture *Images::find(scene::Handle<scene::Image> handle, scene::ImageUse use) const
 {
-  const std::vector<Entry> &entries = entries_[std::size_t(use)];
-  const bool is_made =
-      handle.index < entries.size() && entries[handle.index].handle == handle && entries[handle.index].texture;
-  return is_made ? &entries[handle.index].texture : nullptr;
+  for (const auto &[key, entries] : entries_) {
+    const bool is_made =
+        handle.index < entries.size() && entries[handle.index].handle == handle && entries[handle.index].texture;
+    if (key.first == use && is_made) {
+      return &entries[handle.index].texture;
+    }
+  }
+  return nullptr;
 }
 
 std::size_t Images::count() const
 {
   std::size_t count = 0;
-  for (const std::vector<Entry> &entries : entries_) {
+  for (const auto &[key, entries] : entries_) {
     count += std::size_t(std::ranges::count_if(entries, [](const Entry &entry) { return bool(entry.texture); }));
   }
   return count;
 }
 
-HostChanges Images::update(const scene::Pool<scene::Image> &images)
+HostChanges Images::update(const scene::Scene &scene)
 {
+  const scene::Pool<scene::Image> &images = scene.images();
   const HostChanges changes =
       host_textures_.update([&](scene::Handle<scene::Image> handle) { return images.is_live(handle); });
-  for (std::vector<Entry> &entries : entries_) {
+  for (auto &[key, entries] : entries_) {
     for (Entry &entry : entries) {
       if (entry.texture &&
           (!images.is_live(entry.handle) || (entry.host_resource != 0 && !host_textures_.find(entry.handle)))) {
@@ -157,6 +165,12 @@ HostChanges Images::update(const scene::Pool<scene::Image> &images)
       }
     }
   }
+  const auto is_used = [&](float cutoff) {
+    return cutoff == 0.0F || std::ranges::any_of(scene.materials(), [&](const auto &item) {
+             return material_data(item.value).mask_cutoff == cutoff;
+           });
+  };
+  std::erase_if(entries_, [&](const auto &entries) { return !is_used(entries.first.second); });
   return changes;
 }
 

@@ -15,8 +15,8 @@ namespace gnomon::render_scene {
 
 /**
  * The images and samplers of a scene on one device. An image is uploaded, with mip levels, when a pass first reads it,
- * and again after its content has changed. An image has one texture for each use. Textures with the same sampling
- * settings share a sampler. An image that has a texture of the host is not uploaded.
+ * and again after its content has changed. An image has one texture for each use and each cutoff. Textures with the
+ * same sampling settings share a sampler. An image that has a texture of the host is not uploaded.
  */
 class Images {
  public:
@@ -26,10 +26,12 @@ class Images {
   };
   /**
    * Image and sampler of the texture \a handle; a white texel if the texture is not drawable. The references are valid
-   * until the next get() after an edit of the scene's images, or until update().
+   * until the next get() after an edit of the scene's images, or until update(). \a mask_cutoff: \see
+   * scene::coverage_levels
    * \throws gpu::Error if the device cannot create the image
    */
-  Lookup get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle, scene::ImageUse use);
+  Lookup get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle, scene::ImageUse use,
+             float mask_cutoff = 0.0F);
   /** The texture of an image; nullptr if no pass has read the image for this use. */
   [[nodiscard]] const gpu::Texture *find(scene::Handle<scene::Image> handle,
                                          scene::ImageUse use = scene::ImageUse::Color) const;
@@ -46,9 +48,9 @@ class Images {
   }
   /**
    * Apply the changes of the host's textures, and free the textures of images that were removed from the scene or were
-   * looked up in a texture that the host has taken back.
+   * looked up in a texture that the host has taken back, and those of cutoffs that no material has any more.
    */
-  HostChanges update(const scene::Pool<scene::Image> &images);
+  HostChanges update(const scene::Scene &scene);
 
  private:
   /** \a has_mip_levels: whether the sampled image has any. */
@@ -61,8 +63,8 @@ class Images {
     /** The number in `host_textures_`; 0: the image was uploaded. */
     std::uint64_t host_resource = 0;
   };
-  /** Indexed by scene::ImageUse and Handle::index. */
-  std::array<std::vector<Entry>, 3> entries_;
+  /** Indexed by the use with its cutoff, and by Handle::index. */
+  std::map<std::pair<scene::ImageUse, float>, std::vector<Entry>> entries_;
   HostResources<scene::Image, gpu::HostTexture> host_textures_;
   gpu::Texture white_;
   /** By the sampler's settings, packed into a number. */

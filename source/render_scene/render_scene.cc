@@ -38,7 +38,7 @@ void RenderScene::update()
     return;
   }
   host_batch_changes_ = meshes_.update(scene_.meshes());
-  host_texture_changes_ = images_.update(scene_.images());
+  host_texture_changes_ = images_.update(scene_);
   materials_.update(scene_);
   update_objects();
   update_lamps();

@@ -107,6 +107,10 @@ class RenderScene {
   {
     return objects_;
   }
+  [[nodiscard]] const draw::ObjectBuffer &objects() const
+  {
+    return objects_;
+  }
   /** The mesh and node of an object. \pre objects().is_live(index), and not object_identity */
   [[nodiscard]] const RenderObject &object(draw::ObjectIndex index) const
   {
@@ -166,9 +170,10 @@ class RenderScene {
     return meshes_.get(device_, scene_.meshes(), mesh, streams);
   }
   /** \see Images::get */
-  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use)
+  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use,
+                                       float mask_cutoff = 0.0F)
   {
-    return images_.get(device_, scene_, texture, use);
+    return images_.get(device_, scene_, texture, use, mask_cutoff);
   }
   [[nodiscard]] const Meshes &meshes() const
   {

@@ -33,7 +33,7 @@ MeshStreams streams_of(MaterialClass material_class)
 scene::ImageUse use_of(const scene::Scene &scene, const scene::Material &material, const scene::TextureInput &input)
 {
   const scene::ImageUse use = scene::use_of(material, input);
-  const bool is_opaque = use == scene::ImageUse::Coverage &&
+  const bool is_opaque = (use == scene::ImageUse::Coverage || use == scene::ImageUse::Mask) &&
                          scene.images()[scene.textures()[(material.*input.slot).texture].image].is_opaque;
   return is_opaque ? scene::ImageUse::Color : use;
 }
@@ -47,7 +47,10 @@ TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, Mater
     const scene::Handle<scene::Texture> texture = (material.*input.slot).texture;
     if (is_drawable(scene, texture)) {
       set.textures[i] = texture;
-      set.has_coverage = set.has_coverage || use_of(scene, material, input) == scene::ImageUse::Coverage;
+      if (input.slot == &scene::Material::base_color_texture) {
+        set.base_color_use = use_of(scene, material, input);
+        set.mask_cutoff = set.base_color_use == scene::ImageUse::Mask ? material_data(material).mask_cutoff : 0.0F;
+      }
     }
   }
   return set;
@@ -62,11 +65,11 @@ void bind_textures(draw::ShadingGroup &group, RenderScene &scene, MaterialClass 
 {
   for (std::size_t i = 0; i < input_count(material_class); i++) {
     const scene::TextureInput &input = scene::texture_inputs[i];
-    const bool has_coverage = set.has_coverage && input.slot == &scene::Material::base_color_texture;
-    const scene::ImageUse use = has_coverage     ? scene::ImageUse::Coverage
+    const bool is_base_color = input.slot == &scene::Material::base_color_texture;
+    const scene::ImageUse use = is_base_color    ? set.base_color_use
                                 : input.is_color ? scene::ImageUse::Color
                                                  : scene::ImageUse::Data;
-    const auto [image, sampler] = scene.texture(set.textures[i], use);
+    const auto [image, sampler] = scene.texture(set.textures[i], use, is_base_color ? set.mask_cutoff : 0.0F);
     group.bind_texture(input.name, image, sampler);
   }
 }

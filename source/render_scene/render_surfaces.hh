@@ -15,8 +15,10 @@ namespace gnomon::render_scene {
 struct TextureSet {
   /** An empty handle means that there is no texture. */
   std::array<scene::Handle<scene::Texture>, scene::texture_inputs.size()> textures{};
-  /** That of the base colour, whose image has alpha: scene::ImageUse::Coverage. */
-  bool has_coverage = false;
+  /** The use of that of the base colour, by use_of(). */
+  scene::ImageUse base_color_use = scene::ImageUse::Color;
+  /** Of the base colour texture's alpha; 0: it is no mask. */
+  float mask_cutoff = 0.0F;
 
   auto operator<=>(const TextureSet &) const = default;
 };

@@ -13,7 +13,9 @@ ImageUse use_of(const Material &material, const TextureInput &input)
 {
   const bool covers = input.slot == &Material::base_color_texture && material.alpha_mode != AlphaMode::Opaque &&
                       !material.surface_function;
-  return covers ? ImageUse::Coverage : input.is_color ? ImageUse::Color : ImageUse::Data;
+  return covers           ? material.alpha_mode == AlphaMode::Mask ? ImageUse::Mask : ImageUse::Coverage
+         : input.is_color ? ImageUse::Color
+                          : ImageUse::Data;
 }
 
 float decoded_srgb(float value)
@@ -52,7 +54,7 @@ std::vector<Span> spans_of(std::uint32_t size, std::uint32_t reduced_size)
   return spans;
 }
 
-/** The mean of an area: linear colours times alpha, and alpha. */
+/** The mean of an area: linear colours times the covered part, and that part. */
 struct Mean {
   std::array<float, 3> weighted{};
   float alpha = 0.0F;
@@ -175,13 +177,14 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use)
     }
     return sum;
   };
+  const bool has_alpha = use == ImageUse::Coverage || use == ImageUse::Mask;
   for (const Span &row : rows) {
     for (const Span &column : columns) {
-      std::array<float, 4> mean = sum_of(row, column, use == ImageUse::Coverage);
-      if (use == ImageUse::Coverage && mean[3] > 0.0F) {
+      std::array<float, 4> mean = sum_of(row, column, has_alpha);
+      if (has_alpha && mean[3] > 0.0F) {
         std::for_each_n(mean.begin(), 3, [&](float &value) { value /= mean[3]; });
       }
-      else if (use == ImageUse::Coverage) {
+      else if (has_alpha) {
         mean = sum_of(row, column, false);
       }
       for (std::size_t c = 0; c < 4; c++) {
@@ -192,7 +195,7 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use)
   return result;
 }
 
-std::vector<std::uint8_t> coverage_levels(const Image &image)
+std::vector<std::uint8_t> coverage_levels(const Image &image, float mask_cutoff)
 {
   const std::array<float, 256> decoded = decoded_bytes(ImageUse::Coverage);
   const SrgbEncoder encoded;
@@ -200,7 +203,8 @@ std::vector<std::uint8_t> coverage_levels(const Image &image)
   const auto mean_of_image = [&](std::size_t x, std::size_t y) {
     const std::uint8_t *texel = &image.texels[4 * (y * image.width + x)];
     const float alpha = float(texel[3]) / 255.0F;
-    return Mean{{alpha * decoded[texel[0]], alpha * decoded[texel[1]], alpha * decoded[texel[2]]}, alpha};
+    const float part = mask_cutoff <= 0.0F ? alpha : alpha >= mask_cutoff ? 1.0F : 0.0F;
+    return Mean{{part * decoded[texel[0]], part * decoded[texel[1]], part * decoded[texel[2]]}, part};
   };
   while (levels.back().width > 1 || levels.back().height > 1) {
     const Level &finer = levels.back();

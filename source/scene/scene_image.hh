@@ -16,13 +16,15 @@ enum class ImageUse {
   Data,
   /** Colours that are encoded as sRGB; alpha has no effect. */
   Color,
-  /** The same of masked and blended surfaces: a texel covers the part alpha, and counts by it in a mean. */
+  /** The same of blended surfaces: a texel covers the part alpha, and counts by it in a mean. */
   Coverage,
+  /** The same of masked surfaces: a texel covers all or nothing. */
+  Mask,
 };
 
 /**
- * The use of the image of one of the material's slots. Coverage: the base colour of a masked or blended surface without
- * a surface function, which may show what alpha hides.
+ * The use of the image of one of the material's slots. Coverage and Mask: the base colour of a surface without a
+ * surface function, which may show what alpha hides.
  */
 [[nodiscard]] ImageUse use_of(const Material &material, const TextureInput &input);
 
@@ -40,11 +42,12 @@ enum class ImageUse {
 [[nodiscard]] Image reduced(Image image, std::uint32_t size_max, ImageUse use);
 
 /**
- * The texels of all mip levels, the finest first, for ImageUse::Coverage. A texel of a level has the mean of the
- * colours that it covers, weighted by alpha, and the mean of alpha. Texels without alpha, also those of the image, have
- * the colour of the next coarser level that has one, so that filters between texels mix in no colour that is not seen.
- * Edges are halved and rounded down. \pre a texel of the image has alpha
+ * The texels of all mip levels, the finest first, for ImageUse::Coverage, or for ImageUse::Mask if \a mask_cutoff is
+ * above 0. A texel of a level has the mean of the colours that it covers, weighted by what they cover, and the covered
+ * part. A texel of the image covers the part alpha; of a mask, all if its alpha is at least \a mask_cutoff, otherwise
+ * nothing. Texels that cover nothing, and those of the image without alpha, have the colour of the next coarser level
+ * that has one, so that filters between texels mix in no colour that is not seen. Edges are halved and rounded down.
  */
-[[nodiscard]] std::vector<std::uint8_t> coverage_levels(const Image &image);
+[[nodiscard]] std::vector<std::uint8_t> coverage_levels(const Image &image, float mask_cutoff = 0.0F);
 
 }  // namespace gnomon::scene

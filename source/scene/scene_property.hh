@@ -46,6 +46,8 @@ struct Description {
   /** Limits of a number, and of each component of a vector. */
   double min = 0.0;
   double max = float_max;
+  /** The least absolute value of a number that may be negative. */
+  double least = 0.0;
   /** Meaning of 0, where it is allowed beside the limits. */
   std::string_view zero{};
   /** A number that may be absent, or 0 beside the limits, begins with this in the window. */
@@ -85,12 +87,19 @@ struct Description {
       return false;
     }
     // A number below 0 may be stored as -0.
-    return float(value) >= float(min) && float(value) <= float(max) && (value >= 0.0 || min < 0.0);
+    return float(value) >= float(min) && float(value) <= float(max) && (value >= 0.0 || min < 0.0) &&
+           float(value < 0.0 ? -value : value) >= float(least);
   }
   /** The allowed value next to \a value, which is not NaN. */
   [[nodiscard]] constexpr float nearest(double value) const
   {
-    return allows(value) ? float(value) : value < min && !zero.empty() ? 0.0F : float(value < min ? min : max);
+    if (allows(value)) {
+      return float(value);
+    }
+    if (value >= min && value <= max && least > 0.0) {
+      return float(value < 0.0 ? -least : least);
+    }
+    return value < min && !zero.empty() ? 0.0F : float(value < min ? min : max);
   }
 };
 

@@ -168,8 +168,8 @@ void add_camera_inputs(std::vector<StabilityCase> &cases)
       {-1.0, 1e-300, 0.1, 1.1e12, 1e300});
   add("camera aspect", "/cameras/0/perspective/aspectRatio", "", "left out: aspectRatio", {0.0, 1e-5, 1.0, 1e6},
       {-1.0, 1e-300, 1e7, 1e300});
-  add("camera width", "/cameras/1/orthographic/xmag", "m", "left out: xmag", {1e-12, 1.0, 1e12},
-      {-1.0, 0.0, 1e-300, 1e-13, 1e13, 1e300});
+  add("camera width", "/cameras/1/orthographic/xmag", "m", "left out: xmag", {-1.0, 1e-12, 1.0, 1e12},
+      {0.0, 1e-300, 1e-13, -1e-13, 1e13, -1e13, 1e300});
   add("parallel near", "/cameras/1/orthographic/znear", "m", "left out: z", {0.0, 1e-300, 9.0},
       {-1.0, 10.0, 11.0, 1e300});
   add("parallel far", "/cameras/1/orthographic/zfar", "m", "left out: zfar", {1e-6, 1e12}, {-1.0, 0.0, 1e-300, 1e300});

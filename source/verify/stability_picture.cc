@@ -4,7 +4,7 @@
 
 #include "draw_view_transform_shared.h"
 #include "eevee_camera.hh"
-#include "eevee_film.hh"
+#include "eevee_pixel_filter.hh"
 
 #include <fmt/format.h>
 #include <glm/vector_relational.hpp>

@@ -28,13 +28,14 @@ void Navigation::look_through(const scene::PlacedCamera &camera, const scene::Bo
   const glm::dvec3 position(camera.world_from_camera[3]);
   const glm::dvec3 forward = world_from_view_ * glm::dvec3(0, 0, -1);
   is_orthographic_ = camera.kind == scene::CameraKind::Orthographic;
-  aspect_ = is_orthographic_ ? camera.half_width / camera.half_height : camera.aspect;
+  // The window does not mirror.
+  aspect_ = is_orthographic_ ? std::abs(camera.half_width / camera.half_height) : camera.aspect;
   const double to_middle = bounds.is_empty() ? 0.0 : glm::dot(glm::dvec3(bounds.center()) - position, forward);
   distance_ = to_middle > distance_min ? to_middle : 5.0;
   if (is_orthographic_) {
     // The perspective picture has the height of the orthographic one at the orbit centre.
     vertical_angle_ = 0.7F;
-    const double distance = double(camera.half_height) / std::tan(0.5 * double(vertical_angle_));
+    const double distance = std::abs(double(camera.half_height)) / std::tan(0.5 * double(vertical_angle_));
     target_ws_ = position + distance_ * forward;
     distance_ = std::clamp(distance, distance_min, distance_max);
     return;

@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gnomon::view {
 
@@ -38,7 +39,7 @@ Ray PictureMap::ray_through(const glm::dvec2 &pixel) const
 double PictureMap::metres_per_pixel(const glm::dvec3 &position_ws) const
 {
   const double distance = is_perspective() ? -(view_from_world_ * glm::dvec4(position_ws, 1.0)).z : 1.0;
-  return 2.0 * std::max(distance, 1e-6) / (clip_from_view_[1][1] * size_px_.y);
+  return 2.0 * std::max(distance, 1e-6) / (std::abs(clip_from_view_[1][1]) * size_px_.y);
 }
 
 glm::dvec3 PictureMap::towards_eye(const glm::dvec3 &position_ws) const

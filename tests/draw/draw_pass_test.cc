@@ -275,6 +275,47 @@ TEST_F(ShadingGroupTest, TextureByValueIsThatOfItsBinding)
   }));
 }
 
+TEST_F(ShadingGroupTest, IsCurrentUntilAResourceThatItBindsByValueIsDestroyed)
+{
+  EXPECT_TRUE(pass.is_current(*device));
+  const auto bind = [&] {
+    pass.clear();
+    ShadingGroup &bound = pass.group(shader);
+    bound.bind_uniform("light_block", block);
+    bound.bind_storage("material_block", store);
+    bound.bind_texture("picture", picture, sampler);
+    EXPECT_TRUE(pass.is_current(*device));
+  };
+  bind();
+  block = {};
+  EXPECT_FALSE(pass.is_current(*device));
+  // It gets the same index, and another id.
+  block = device->create_buffer({.name = "block", .size_bytes = 512});
+  EXPECT_FALSE(pass.is_current(*device));
+  bind();
+  store = {};
+  EXPECT_FALSE(pass.is_current(*device));
+  store = device->create_buffer({"store", gpu::BufferKind::Storage, 512});
+  bind();
+  picture = {};
+  EXPECT_FALSE(pass.is_current(*device));
+  picture = device->create_texture({.name = "picture"});
+  bind();
+  sampler = {};
+  EXPECT_FALSE(pass.is_current(*device));
+}
+
+TEST_F(ShadingGroupTest, ResourcesByReferenceDoNotMakeItOutOfDate)
+{
+  gpu::BufferRange range{block.id(), 0, 16};
+  TextureBinding binding{picture.id(), sampler.id()};
+  group.bind_uniform_ref("light_block", &range);
+  group.bind_texture_ref("picture", &binding);
+  block = {};
+  picture = {};
+  EXPECT_TRUE(pass.is_current(*device));
+}
+
 TEST_F(ShadingGroupTest, ConstantByReferenceIsReadAtEachRecordAndByValueIsNot)
 {
   int face = 1;

@@ -56,12 +56,13 @@ inline scene::Scene import(const GltfBuilder &builder)
 }
 
 /** The message of the import error; empty if there was none. */
-inline std::string import_error(const std::string &content, const std::string &name = "scene.gltf")
+inline std::string import_error(const std::string &content, const std::string &name = "scene.gltf",
+                                const gltf::ImportOptions &options = {})
 {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.write(name, content);
   try {
-    (void)gltf::import_gltf(path);
+    (void)gltf::import_gltf(path, options);
   }
   catch (const gltf::ImportError &error) {
     const std::string message = error.what();

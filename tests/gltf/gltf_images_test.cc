@@ -429,5 +429,28 @@ TEST(GltfWebp, SizesAreLimitedBeforeAllocation)
                  "is too large, 16001x16001 texels: 24806908 are left of those that all images may have");
 }
 
+TEST(GltfWebp, SixteenImagesOf4096TexelsFitTheBudgetAndItIsAnOption)
+{
+  GltfBuilder builder = textured_triangle({{"uri", data_uri(claimed_webp(4096))}});
+  for (int i = 1; i < 16; i++) {
+    Bytes file = claimed_webp(4096);
+    file.back() = std::uint8_t(i);
+    builder.append("images", {{"uri", data_uri(file)}});
+    builder.append("textures", {{"source", i}});
+    builder.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+    json primitive = builder.document["meshes"][0]["primitives"][0];
+    primitive["material"] = i;
+    builder.document["meshes"][0]["primitives"].push_back(primitive);
+  }
+  const auto count_of = [&](const gltf::ImportOptions &options) {
+    const scene::Scene scene = import_text(builder.gltf(), "scene.gltf", options);
+    return std::ranges::count_if(scene.warnings, [](const std::string &warning) {
+      return warning.find("are left of those that all images may have, by --image-memory") != warning.npos;
+    });
+  };
+  EXPECT_EQ(count_of({}), 0);
+  EXPECT_EQ(count_of({.image_bytes_max = std::size_t(15) * 4 * 4096 * 4096}), 1);
+}
+
 }  // namespace
 }  // namespace gnomon::test

@@ -1143,6 +1143,15 @@ TEST(GltfCamera, Orthographic)
   EXPECT_EQ(camera.far, 50.0F);
 }
 
+TEST(GltfCamera, NegativeSizesAreThoseOfMirroredPictures)
+{
+  const Scene scene = import_camera(
+      {{"type", "orthographic"}, {"orthographic", {{"xmag", -4}, {"ymag", -3}, {"znear", 0}, {"zfar", 50}}}});
+  EXPECT_FALSE(scene.is_camera_default);
+  EXPECT_EQ(scene.placed_cameras().at(0).half_width, -4.0F);
+  EXPECT_EQ(scene.placed_cameras().at(0).half_height, -3.0F);
+}
+
 TEST(GltfCamera, EachNodeWithOneIsAnEntry)
 {
   GltfBuilder builder = triangle_scene();
@@ -1169,6 +1178,7 @@ TEST(GltfCamera, BadNumbersLeaveItOut)
   expect_left_out("perspective", {{"yfov", 1}, {"znear", 1}, {"zfar", 1e300}}, "zfar");
   expect_left_out("perspective", {{"yfov", 1}, {"znear", 1}, {"aspectRatio", -1}}, "aspectRatio -1");
   expect_left_out("orthographic", {{"xmag", 0}, {"ymag", 1}, {"znear", 0}, {"zfar", 1}}, "xmag 0");
+  expect_left_out("orthographic", {{"xmag", -1e-13}, {"ymag", 1}, {"znear", 0}, {"zfar", 1}}, "xmag -1e-13");
   expect_left_out("orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 1}, {"zfar", 1}}, "zfar 1");
 }
 

@@ -382,6 +382,14 @@ TEST(SlowGltfImport, WorkIsLimitedForSmallFiles)
   EXPECT_HAS(import_error(builder.glb(), "scene.glb"), "scene: has more than 268435456 vertices and indices");
 }
 
+TEST(GltfImport, TheLimitOfVerticesIsAnOption)
+{
+  const std::string triangle = triangle_scene().gltf();
+  EXPECT_HAS(import_error(triangle, "scene.gltf", {.element_count_max = 2}),
+             "scene: has more than 2 vertices and indices");
+  EXPECT_EQ(import_error(triangle, "scene.gltf", {.element_count_max = 6}), "");
+}
+
 TEST(SlowGltfImport, ObjectsAreLimited)
 {
   GltfBuilder builder;

@@ -8,6 +8,7 @@
 #include <epoxy/gl.h>
 
 #include <deque>
+#include <utility>
 
 namespace gnomon::gpu {
 namespace {
@@ -56,6 +57,27 @@ class FailureGpu : public test::GlDeviceTest {
   /** Errors that the driver reports before its own. */
   static inline std::deque<GLenum> errors;
   static inline std::size_t large_size = 0;
+
+  /** A copy that the driver has not executed yet. */
+  struct DelayedCopy {
+    GLuint buffer = 0;
+    GLintptr offset = 0;
+    std::vector<std::byte> bytes;
+  };
+  static inline std::vector<DelayedCopy> delayed_copies;
+
+  static void GLAPIENTRY delay_copy(GLuint source, GLuint target, GLintptr first, GLintptr offset, GLsizeiptr size)
+  {
+    DelayedCopy &copy = delayed_copies.emplace_back(target, offset, std::vector<std::byte>(std::size_t(size)));
+    glGetNamedBufferSubData(source, first, size, copy.bytes.data());
+  }
+
+  static void GLAPIENTRY execute_delayed_copies()
+  {
+    for (const DelayedCopy &copy : std::exchange(delayed_copies, {})) {
+      glNamedBufferSubData(copy.buffer, copy.offset, GLsizeiptr(copy.bytes.size()), copy.bytes.data());
+    }
+  }
 
   static GLenum GLAPIENTRY next_error()
   {
@@ -143,6 +165,55 @@ TEST_F(FailureGpu, APoolThatCannotGrowLeavesAllBatches)
   const Batch after = test::full_triangle(*device, 0.5F, "after");
   expect_drawn(first, 5);
   expect_drawn(after, 6);
+}
+
+/** As NVIDIA's driver does it: copies are executed before draws and by glFinish, but after a later glBufferSubData. */
+TEST_F(FailureGpu, ACopyThatTheDriverDelaysDoesNotReplaceALaterWrite)
+{
+  const Shader block_shader = make_shader(*device, "block", test::CLIP_SPACE_VERT, R"(
+layout(std140, binding = 9) uniform color_block
+{
+  vec4 color;
+};
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = color;
+})");
+  const Buffer block = device->create_buffer({.name = "color_block", .size_bytes = sizeof(glm::vec4)});
+  device->update(block, glm::vec4(1));
+  const Batch first = test::full_triangle(*device, 0);
+  expect_drawn(first, 1);
+  std::vector<glm::vec3> positions = {{-1, -1, 0}, {3, -1, 0}, {-1, 3, 0}};
+  positions.resize(2000);
+  std::vector<std::uint32_t> indices = {0, 1, 2};
+  indices.resize(2001);
+  Batch large;
+  {
+    delayed_copies.clear();
+    glFinish();
+    const Hook copy(epoxy_glCopyNamedBufferSubData, &FailureGpu::delay_copy);
+    const Hook finish(epoxy_glFinish, &FailureGpu::execute_delayed_copies);
+    large = device->create_batch({"large", positions, {}, indices});
+    CommandList list;
+    const glm::vec4 two(2);
+    list.update(block, 0, std::as_bytes(std::span(&two, 1)));
+    device->submit(list);
+    ASSERT_FALSE(delayed_copies.empty());
+    device->update(block, glm::vec4(3));
+    execute_delayed_copies();
+  }
+  expect_drawn(large, 4);
+  expect_drawn(first, 5);
+  CommandList list;
+  list.begin_pass("p", framebuffer, {});
+  list.set_shader(block_shader.id());
+  list.set_state(State::WriteColor);
+  list.bind_uniform(9, {block.id()});
+  test::append_draw(list, first);
+  list.end_pass();
+  device->submit(list);
+  EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture)[0], glm::vec4(3));
 }
 
 TEST_F(FailureGpu, AFailedSubmitLeavesAUsableDevice)

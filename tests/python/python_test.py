@@ -528,7 +528,8 @@ class Pictures(unittest.TestCase):
     def test_settings_are_those_of_the_program(self):
         """Each setting on which pictures depend, by its name, with the value that the program reports."""
         # Not of a renderer: display, import, and what changes no picture.
-        others = {"view_transform", "exposure", "variant", "texture_size_max", "lamp_units", "is_timed",
+        others = {"view_transform", "exposure", "variant", "texture_size_max", "image_bytes_max",
+                  "element_count_max", "lamp_units", "is_timed",
                   "layer_pass", "clustered_lamps_min"}
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "report.json")

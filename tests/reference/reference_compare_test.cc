@@ -189,6 +189,25 @@ TEST(Compare, LeakAndAcneAreWrongFarFromAnyEdge)
   EXPECT_EQ(compare_visibility(tracer, sun, shaded.view(), {}).leak_count, 3U);
 }
 
+TEST(Compare, LightBehindAWallIsALeakHoweverNearItIs)
+{
+  // A wall on a plane, lit from the side of -y.
+  scene::Scene scene;
+  add_rectangle(scene, {-5, -5}, {5, 5}, glm::mat4(1.0F));
+  add_rectangle(scene, {-1, 0}, {1, 1}, glm::rotate(glm::mat4(1.0F), 1.5707963F, glm::vec3(1, 0, 0)));
+  const Tracer tracer(scene);
+  const scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0}, {0, 1, -1});
+  CompareSettings settings;
+  settings.texel_size_m = [](const glm::dvec3 & /*position_ws*/) { return 0.01; };
+  Shaded shaded;
+  // In the shadow, a third of a texel behind the wall, and as far from the free edge at x = 1.
+  shaded.add({0.0F, 0.003F, 0.0F}, {0, 0, 1}, 1.0F);
+  shaded.add({0.997F, 0.5F, 0.0F}, {0, 0, 1}, 1.0F);
+  const VisibilityError error = compare_visibility(tracer, sun, shaded.view(), settings);
+  EXPECT_EQ(error.wrong_count, 2U);
+  EXPECT_EQ(error.leak_count, 1U);
+}
+
 TEST(Compare, AcneInsideOfASphereIsNotAnEdge)
 {
   // The inside of a closed sphere with the lamp at its centre is lit, although every tangent plane is outside.

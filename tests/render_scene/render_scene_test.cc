@@ -149,6 +149,20 @@ TEST_F(RenderSceneTest, AMeshGetsTextureCoordinatesWhereTheyAreReadAndKeepsThem)
   EXPECT_EQ(uploads_of_batch(box), bare) << "no viewport asked for those of the new shape";
 }
 
+TEST_F(RenderSceneTest, LevelsOfAMaskAreThoseOfCutoffsThatMaterialsHave)
+{
+  const auto texture = add_texture(scene, 2, std::vector<std::uint8_t>(16, 100));
+  for (const float cutoff : {0.25F, 0.5F, 0.75F}) {
+    scene.edit(material, [&](scene::Material &value) {
+      value.alpha_mode = scene::AlphaMode::Mask;
+      value.alpha_cutoff = cutoff;
+    });
+    render_scene.update();
+    static_cast<void>(render_scene.texture(texture, scene::ImageUse::Mask, cutoff));
+    EXPECT_EQ(render_scene.images().count(), 1U) << cutoff;
+  }
+}
+
 TEST_F(RenderSceneTest, RemovedMeshesAndImagesAreFreed)
 {
   const auto texture = add_texture(scene, 1, {1, 2, 3, 255});

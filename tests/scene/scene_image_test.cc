@@ -80,6 +80,18 @@ TEST(CoverageLevels, WeighColoursByAlphaAndKeepTheMeanOfAlpha)
   EXPECT_EQ(levels[4 * 10 + 3], 191);
 }
 
+TEST(CoverageLevels, OfAMaskAreSharesOfTheTexelsAtLeastAtItsCutoff)
+{
+  // Alpha of 0, 76, 77 and 255: of a cutoff of 0.3, which is 76.5, the last two are left.
+  Image image{"mask", 2, 2, {9, 9, 9, 0, 200, 0, 0, 76, 0, 200, 0, 77, 0, 200, 0, 255}};
+  std::vector<std::uint8_t> levels = coverage_levels(image, 0.3F);
+  ASSERT_EQ(levels.size(), 20U);
+  EXPECT_TRUE(std::equal(levels.begin() + 4, levels.begin() + 16, image.texels.begin() + 4)) << "the image";
+  EXPECT_EQ(std::vector(levels.begin() + 16, levels.end()), (std::vector<std::uint8_t>{0, 200, 0, 128}));
+  EXPECT_EQ(coverage_levels(image, 0.1F)[19], 191);
+  EXPECT_EQ(coverage_levels({"none", 1, 2, {1, 1, 1, 99, 1, 1, 1, 99}}, 0.5F)[11], 0);
+}
+
 TEST(CoverageLevels, AreMeansOfLightAlsoForOddEdges)
 {
   // Opaque: the mean of the light of 0 and 255 is 187.5 / 255 encoded.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_adaptive.hh"
+#include "eevee_resource_report.hh"
 
-#include "eevee_engine_data.hh"
-#include "eevee_film.hh"
-#include "eevee_frame_needs.hh"
+#include "eevee_pixel_filter.hh"
 
 #include <glm/geometric.hpp>
 
@@ -64,188 +63,246 @@ static std::string_view why_not_recorded(const FrameState &state)
   if (settings.light.kind != LightPart::Kind::All) {
     return "a part of the light is drawn";
   }
-  if (!state.data.shared->lamp_points.empty()) {
+  if (state.has_lamp_points) {
     return "each sample sees other points of lamps";
   }
-  return state.data.stl.transmissive.empty() ? "" : "a material that is drawn transmits light";
+  return state.has_transmission ? "a material that is drawn transmits light" : "";
 }
 
-bool has_adaptive_passes(const FrameState &state)
-{
-  return why_not_recorded(state).empty();
-}
-
-/** The reason why all pixels get all samples; empty: some may get fewer. */
-static std::string_view why_all_samples(const FrameState &state)
+std::string_view AdaptiveSampling::why_all_samples(const FrameState &state) const
 {
   if (const std::string_view why_not = why_not_recorded(state); !why_not.empty()) {
     return why_not;
   }
-  if (!state.data.is_seen) {
+  if (!state.is_seen) {
     return nothing_seen;
   }
-  if (!state.data.adaptive.is_whole_picture) {
+  if (!is_whole_picture_) {
     return "a region of the picture is drawn";
   }
-  return std::ranges::any_of(state.data.shared->caster_kinds, &CasterKind::is_blended)
-             ? "blended objects cast other shadows with each sample"
-             : "";
+  return state.has_blended_casters ? "blended objects cast other shadows with each sample" : "";
 }
 
-/** Need of a step that skips converged pixels. */
-static Need need_of(const FrameState &state, std::string_view why)
+Need AdaptiveSampling::need_of(const FrameState &state, std::string_view why) const
 {
-  if (state.data.adaptive.is_active) {
+  if (is_active_) {
     return {true, why};
   }
   const std::string_view why_not = why_all_samples(state);
   return {false, why_not.empty() ? "no pixel is converged yet" : why_not};
 }
 
-Need need_adaptive_depth(const FrameState &state)
-{
-  return need_of(state, "the depth test skips converged pixels");
-}
-
-Need need_adaptive_background(const FrameState &state)
-{
-  const Need need = need_of(state, "deferred lighting skips converged pixels");
-  return need.is_needed && !has_gbuffer(state.data) ? Need{false, why_forward} : need;
-}
-
-Need need_adaptive_film(const FrameState &state)
-{
-  return need_of(state, "converged pixels keep their mean");
-}
-
-Need need_adaptive_test(const FrameState &state)
+Need AdaptiveSampling::need_test(const FrameState &state) const
 {
   if (const std::string_view why_not = why_all_samples(state); !why_not.empty()) {
     return {false, why_not};
   }
-  if (state.data.adaptive.is_active) {
+  if (is_active_) {
     return {false, "the converged pixels are known"};
   }
   const int count = state.settings.planned_sample_count();
-  const int drawn = state.data.film_sample_count + 1;
+  const int drawn = film_.sample_count() + 1;
   return drawn < adaptive_first_samples(count) ? Need{false, "all pixels get the first samples"}
          : drawn == count                      ? Need{false, "no sample is left"}
                                                : Need{true, "pixels that differ little from others are converged"};
 }
 
-void record_adaptive_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+void AdaptiveSampling::sync(const Settings &settings)
 {
-  record_pass(step, sample, list, sample.data.fbl.depth_fb, {});
+  sample_step_ = sample_step(settings);
 }
 
-Need need_adaptive_forward_depth(const FrameState &state)
+int AdaptiveSampling::sample_index(const Settings &settings, int position) const
 {
-  const Need need = need_of(state, "the depth test skips converged pixels after deferred lighting");
-  return need.is_needed ? need_forward_depth(state) : need;
+  return settings.sample_count == 0 ? position : int(std::int64_t(position) * sample_step_ % settings.sample_count);
 }
 
-void record_adaptive_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+void AdaptiveSampling::make(const FrameState &state, const draw::Viewport &viewport)
 {
-  record_pass(step, sample, list, sample.data.fbl.depth_fb,
-              {.depth_load = gpu::LoadAction::Load, .scissor = sample.viewport.part_region()});
-}
-
-void record_adaptive_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
-{
-  record_pass(step, sample, list, sample.data.fbl.depth_fb, {.depth_load = gpu::LoadAction::Load});
-}
-
-/** StorageList::film_share with the current sample. */
-static double share_with(const FrameSample &sample)
-{
-  return sample.data.stl.film_share + film_share(sample.data.sample_index, sample.settings.sample_count,
-                                                 sample.settings.seed, sample.data.stl.film_weight_sum);
-}
-
-void record_adaptive_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
-{
-  AdaptiveSampling &adaptive = sample.data.adaptive;
-  const double share = share_with(sample);
-  adaptive.factor = glm::vec4(float(share / adaptive.converged_share));
-  adaptive.converged_share = share;
-  update_film_weights(sample);
-  record_pass(step, sample, list, adaptive.film_fb,
-              {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
-}
-
-void record_adaptive_test(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
-{
-  Data &data = sample.data;
-  if (awaits_depths(data, sample.view)) {
-    // The depths of all pixels are read back.
+  if (!why_not_recorded(state).empty()) {
+    resized();
     return;
   }
-  AdaptiveSampling &adaptive = data.adaptive;
-  adaptive.converged_share = share_with(sample);
-  adaptive.sample_scale = float(1.0 / adaptive.converged_share);
-  record_pass(step, sample, list, adaptive.test_fb, {});
-  adaptive.is_tested = true;
-}
-
-Need need_adaptive_spread(const FrameState &state)
-{
-  const AdaptiveSampling &adaptive = state.data.adaptive;
-  return adaptive.is_tested && !adaptive.is_active ? Need{true, "the pixel filter reads neighbours"}
-                                                   : Need{false, need_adaptive_test(state).reason};
-}
-
-void record_adaptive_spread(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
-{
-  record_pass(step, sample, list, sample.data.adaptive.spread_fb, {});
-  sample.data.adaptive.is_active = true;
-}
-
-void Engine::make_adaptive(draw::Viewport &viewport)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  AdaptiveSampling &adaptive = data.adaptive;
-  if (!has_adaptive_passes({settings_, data})) {
-    adaptive = {};
-    return;
-  }
-  if (adaptive.film_converged) {
+  if (film_converged_) {
     return;
   }
   gpu::Device &device = viewport.device();
-  adaptive.film_converged = create_target(device, "film_converged", gpu::Format::Depth32F, viewport.size_px());
-  adaptive.drawn_converged = create_target(device, "drawn_converged", gpu::Format::Depth32F, viewport.drawn_size_px());
-  adaptive.test_fb =
-      device.create_framebuffer({.name = "adaptive_test_fb", .colors = {}, .depth = {&adaptive.film_converged}});
-  adaptive.spread_fb =
-      device.create_framebuffer({.name = "adaptive_spread_fb", .colors = {}, .depth = {&adaptive.drawn_converged}});
-  adaptive.film_fb = device.create_framebuffer(
-      {.name = "adaptive_film_fb", .colors = {{&data.txl.film}}, .depth = {&adaptive.film_converged}});
+  film_converged_ = create_target(device, "film_converged", gpu::Format::Depth32F, viewport.size_px());
+  drawn_converged_ = create_target(device, "drawn_converged", gpu::Format::Depth32F, viewport.drawn_size_px());
+  test_fb_ = device.create_framebuffer({.name = "adaptive_test_fb", .colors = {}, .depth = {&film_converged_}});
+  spread_fb_ = device.create_framebuffer({.name = "adaptive_spread_fb", .colors = {}, .depth = {&drawn_converged_}});
+  film_fb_ = device.create_framebuffer(
+      {.name = "adaptive_film_fb", .colors = {{&film_.texture()}}, .depth = {&film_converged_}});
 }
 
-void Engine::record_adaptive(draw::Viewport &viewport)
+void AdaptiveSampling::resized()
 {
-  Data &data = viewport.engine_data<Data>(*this);
-  AdaptiveSampling &adaptive = data.adaptive;
-  gpu::Device &device = viewport.device();
-  draw::ShadingGroup &test = data.psl->adaptive_test_pass.group(shaders_->get(device, ShaderId::AdaptiveTest));
-  test.bind_texture("film", data.txl.film, data.txl.nearest);
-  test.constant_ref("sample_scale", &adaptive.sample_scale);
-  test.constant("threshold", settings_.noise_threshold);
+  test_fb_ = {};
+  spread_fb_ = {};
+  film_fb_ = {};
+  film_converged_ = {};
+  drawn_converged_ = {};
+  begin_picture();
+}
+
+void AdaptiveSampling::record(gpu::Device &device, ShaderCache &shaders, const Settings &settings, glm::ivec2 guard_px)
+{
+  for (draw::Pass *pass :
+       {&test_pass_, &spread_pass_, &depth_pass_, &background_pass_, &sampled_pass_, &converged_pass_}) {
+    pass->clear();
+  }
+  if (!film_converged_) {
+    return;
+  }
+  film_.add_to(sampled_pass_, shaders.get(device, ShaderId::Film), buffers_.radiance, guard_px, buffers_.nearest);
+  draw::ShadingGroup &test = test_pass_.group(shaders.get(device, ShaderId::AdaptiveTest));
+  test.bind_texture("film", film_.texture(), buffers_.nearest);
+  test.constant_ref("sample_scale", &sample_scale_);
+  test.constant("threshold", settings.noise_threshold);
   test.call_procedural();
-  draw::ShadingGroup &spread = data.psl->adaptive_spread_pass.group(shaders_->get(device, ShaderId::AdaptiveSpread));
-  spread.bind_texture("film_converged", adaptive.film_converged, data.txl.nearest);
-  spread.constant("film_origin_px", viewport.guard_px());
+  draw::ShadingGroup &spread = spread_pass_.group(shaders.get(device, ShaderId::AdaptiveSpread));
+  spread.bind_texture("film_converged", film_converged_, buffers_.nearest);
+  spread.constant("film_origin_px", guard_px);
   spread.call_procedural();
-  for (const auto &[pass, is_inverted] :
-       {std::pair(&data.psl->adaptive_depth_pass, 0.0F), std::pair(&data.psl->adaptive_background_pass, 1.0F)}) {
-    draw::ShadingGroup &depth = pass->group(shaders_->get(device, ShaderId::AdaptiveDepth));
-    depth.bind_texture("drawn_converged", adaptive.drawn_converged, data.txl.nearest);
+  for (const auto &[pass, is_inverted] : {std::pair(&depth_pass_, 0.0F), std::pair(&background_pass_, 1.0F)}) {
+    draw::ShadingGroup &depth = pass->group(shaders.get(device, ShaderId::AdaptiveDepth));
+    depth.bind_texture("drawn_converged", drawn_converged_, buffers_.nearest);
     depth.constant("is_inverted", is_inverted);
     depth.call_procedural();
   }
-  draw::ShadingGroup &converged = data.psl->film_converged_pass.group(shaders_->get(device, ShaderId::AdaptiveScale));
-  converged.constant_ref("factor", &adaptive.factor);
+  draw::ShadingGroup &converged = converged_pass_.group(shaders.get(device, ShaderId::AdaptiveScale));
+  converged.constant_ref("factor", &factor_);
   converged.call_procedural();
+}
+
+void AdaptiveSampling::begin_sample(bool is_whole)
+{
+  is_whole_picture_ = is_whole;
+}
+
+void AdaptiveSampling::begin_picture()
+{
+  is_tested_ = is_active_ = false;
+}
+
+static std::string_view no_convergence(const FrameState & /*state*/)
+{
+  return "all pixels get all samples";
+}
+
+FrameStep AdaptiveSampling::depth_step()
+{
+  return {.name = "adaptive_depth",
+          .part = FrameStep::Part::First,
+          .need = [this](const FrameState &state) { return need_of(state, "the depth test skips converged pixels"); },
+          .reads = {"drawn_converged"},
+          .writes = {"depth"},
+          .passes = {{&depth_pass_, "converged pixels", no_convergence}},
+          .record = [this](FrameSample &sample,
+                           gpu::CommandList &list) { record_pass(sample, list, buffers_.depth_fb, {}); }};
+}
+
+FrameStep AdaptiveSampling::background_step()
+{
+  return {.name = "adaptive_background",
+          .part = FrameStep::Part::First,
+          .need =
+              [this](const FrameState &state) {
+                const Need need = need_of(state, "deferred lighting skips converged pixels");
+                return need.is_needed && !depth_.has_gbuffer() ? Need{false, why_forward} : need;
+              },
+          .reads = {"drawn_converged"},
+          .writes = {"depth"},
+          .passes = {{&background_pass_, "converged pixels", no_convergence}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                record_pass(sample, list, buffers_.depth_fb, {.depth_load = gpu::LoadAction::Load});
+              }};
+}
+
+FrameStep AdaptiveSampling::forward_depth_step()
+{
+  return {.name = "adaptive_forward_depth",
+          .part = FrameStep::Part::Rows,
+          .need =
+              [this](const FrameState &state) {
+                const Need need = need_of(state, "the depth test skips converged pixels after deferred lighting");
+                return need.is_needed ? depth_.need_forward(state) : need;
+              },
+          .reads = {"drawn_converged"},
+          .writes = {"depth"},
+          .passes = {{&depth_pass_, "converged pixels", no_convergence}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                record_pass(sample, list, buffers_.depth_fb,
+                            {.depth_load = gpu::LoadAction::Load, .scissor = sample.viewport.part_region()});
+              }};
+}
+
+FrameStep AdaptiveSampling::film_step()
+{
+  return {.name = "adaptive_film",
+          .part = FrameStep::Part::Last,
+          .need = [this](const FrameState &state) { return need_of(state, "converged pixels keep their mean"); },
+          .reads = {"film_converged", "radiance"},
+          .writes = {"film"},
+          .passes = {{&sampled_pass_, "pixels that get the sample", no_convergence},
+                     {&converged_pass_, "pixels that keep their mean", no_convergence}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                const double share = film_.share_with(sample.settings, sample.index);
+                factor_ = glm::vec4(float(share / converged_share_));
+                converged_share_ = share;
+                film_.set_weights(sample);
+                record_pass(sample, list, film_fb_, drawn_over());
+              }};
+}
+
+FrameStep AdaptiveSampling::test_step()
+{
+  return {.name = "adaptive_test",
+          .part = FrameStep::Part::Last,
+          .need = [this](const FrameState &state) { return need_test(state); },
+          .reads = {"film"},
+          .writes = {"film_converged"},
+          .passes = {{&test_pass_, "pixels of the film", no_convergence}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                if (sample.awaits_depths) {
+                  // The depths of all pixels are read back.
+                  return;
+                }
+                converged_share_ = film_.share_with(sample.settings, sample.index);
+                sample_scale_ = float(1.0 / converged_share_);
+                record_pass(sample, list, test_fb_, {});
+                is_tested_ = true;
+              }};
+}
+
+FrameStep AdaptiveSampling::spread_step()
+{
+  return {.name = "adaptive_spread",
+          .part = FrameStep::Part::Last,
+          .need =
+              [this](const FrameState &state) {
+                return is_tested_ && !is_active_ ? Need{true, "the pixel filter reads neighbours"}
+                                                 : Need{false, need_test(state).reason};
+              },
+          .reads = {"film_converged"},
+          .writes = {"drawn_converged"},
+          .passes = {{&spread_pass_, "pixels of the radiance", no_convergence}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                record_pass(sample, list, spread_fb_, {});
+                is_active_ = true;
+              }};
+}
+
+void AdaptiveSampling::report(ResourceReport &report) const
+{
+  const char *why_not = report.settings.noise_threshold > 0.0F ? "all pixels get all samples" : not_asked_for;
+  report.add_target(film_converged_, "film_converged", "pixels that need no more samples", why_not);
+  report.add_target(drawn_converged_, "drawn_converged", "pixels that need no more samples", why_not);
 }
 
 }  // namespace gnomon::eevee

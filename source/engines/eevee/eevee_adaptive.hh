@@ -1,37 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_frame.hh"
+#include "eevee_depth.hh"
+#include "eevee_film.hh"
 
-/**
- * Adaptive sampling: after the first samples of a picture, a pixel gets further samples only if it differs from its
- * neighbours by more than Settings::noise_threshold. Other pixels are converged: the depth test skips them in all
- * passes that draw objects or light, and their mean stays. Internal to the engine.
- */
 namespace gnomon::eevee {
-
-/** State of adaptive sampling in a viewport. Textures and framebuffers are created when a threshold is set. */
-struct AdaptiveSampling {
-  /** 1: the pixel of the film is converged; otherwise 0. */
-  gpu::Texture film_converged;
-  /** The same for pixels of the radiance: all film pixels that read them are converged. */
-  gpu::Texture drawn_converged;
-  gpu::Framebuffer test_fb;
-  gpu::Framebuffer spread_fb;
-  /** The film, with `film_converged` as its depth. */
-  gpu::Framebuffer film_fb;
-  /** No region of the picture is drawn alone. */
-  bool is_whole_picture = false;
-  /** The first samples of the current picture were tested. */
-  bool is_tested = false;
-  /** Converged pixels of the current picture are skipped. */
-  bool is_active = false;
-  /** Sum of the filter weights that the converged pixels of the film have, as StorageList::film_share. */
-  double converged_share = 0.0;
-  /** Passes read these by reference. */
-  float sample_scale = 1.0F;
-  glm::vec4 factor{1.0F};
-};
 
 /** Largest result of adaptive_first_samples(). */
 inline constexpr int adaptive_first_max = 4;
@@ -49,31 +22,93 @@ inline constexpr int adaptive_first_max = 4;
  */
 [[nodiscard]] int sample_step(const Settings &settings);
 
-/** Whether the settings and the scene allow that some pixels get fewer samples, so that the passes are recorded. */
-[[nodiscard]] bool has_adaptive_passes(const FrameState &state);
+/**
+ * Adaptive sampling: after the first samples of a picture, a pixel gets further samples only if it differs from its
+ * neighbours by more than Settings::noise_threshold. Other pixels are converged: the depth test skips them in all
+ * passes that draw objects or light, and their mean stays: decision 0032. Internal to the engine.
+ */
+class AdaptiveSampling {
+ public:
+  AdaptiveSampling(Film &film, const RenderBuffers &buffers, const DepthPasses &depth)
+      : film_(film), buffers_(buffers), depth_(depth)
+  {
+  }
+  /** For pictures with \a settings from now on. */
+  void sync(const Settings &settings);
+  /** Index in the picture of the sample that is drawn at \a position. */
+  [[nodiscard]] int sample_index(const Settings &settings, int position) const;
+  /** Create the resources, or destroy them where all pixels get all samples. */
+  void make(const FrameState &state, const draw::Viewport &viewport);
+  void resized();
+  /** Record the passes, if there are resources. */
+  void record(gpu::Device &device, ShaderCache &shaders, const Settings &settings, glm::ivec2 guard_px);
+  /** \a is_whole: no region of the picture is drawn alone. */
+  void begin_sample(bool is_whole);
+  void begin_picture();
 
-/** Depth of converged pixels, nearer than everything, before objects are drawn. */
-[[nodiscard]] Need need_adaptive_depth(const FrameState &state);
-void record_adaptive_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+  void report(ResourceReport &report) const;
+  /** Some pixels may get fewer samples than others. */
+  [[nodiscard]] bool has_maps() const
+  {
+    return bool(film_converged_);
+  }
+  /** Converged pixels of the current picture are skipped. */
+  [[nodiscard]] bool is_active() const
+  {
+    return is_active_;
+  }
 
-/** Depth of converged pixels behind everything, so that deferred lighting skips them too. */
-[[nodiscard]] Need need_adaptive_background(const FrameState &state);
-void record_adaptive_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+  /** Depth of converged pixels, nearer than everything, before objects are drawn. */
+  [[nodiscard]] FrameStep depth_step();
+  /** Depth of converged pixels behind everything, so that deferred lighting skips them too. */
+  [[nodiscard]] FrameStep background_step();
+  /** Depth of converged pixels again, before forward objects are drawn after deferred lighting. */
+  [[nodiscard]] FrameStep forward_depth_step();
+  /** Adds the sample to the other pixels of the film, and keeps the mean of the converged ones. */
+  [[nodiscard]] FrameStep film_step();
+  /** Finds the converged pixels of the film after the first samples. */
+  [[nodiscard]] FrameStep test_step();
+  /** Finds the converged pixels of the radiance. */
+  [[nodiscard]] FrameStep spread_step();
 
-/** Depth of converged pixels again, before forward objects are drawn after deferred lighting. */
-[[nodiscard]] Need need_adaptive_forward_depth(const FrameState &state);
-void record_adaptive_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+ private:
+  [[nodiscard]] std::string_view why_all_samples(const FrameState &state) const;
+  /** Need of a step that skips converged pixels. */
+  [[nodiscard]] Need need_of(const FrameState &state, std::string_view why) const;
+  [[nodiscard]] Need need_test(const FrameState &state) const;
 
-/** Adds the sample to the other pixels of the film, and keeps the mean of the converged ones. */
-[[nodiscard]] Need need_adaptive_film(const FrameState &state);
-void record_adaptive_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
-
-/** Finds the converged pixels of the film after the first samples. */
-[[nodiscard]] Need need_adaptive_test(const FrameState &state);
-void record_adaptive_test(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
-
-/** Finds the converged pixels of the radiance. */
-[[nodiscard]] Need need_adaptive_spread(const FrameState &state);
-void record_adaptive_spread(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+  Film &film_;
+  const RenderBuffers &buffers_;
+  const DepthPasses &depth_;
+  /** 1: the pixel of the film is converged; otherwise 0. Empty where all pixels get all samples. */
+  gpu::Texture film_converged_;
+  /** The same for pixels of the radiance: all film pixels that read them are converged. */
+  gpu::Texture drawn_converged_;
+  gpu::Framebuffer test_fb_;
+  gpu::Framebuffer spread_fb_;
+  /** The film, with `film_converged_` as its depth. */
+  gpu::Framebuffer film_fb_;
+  draw::Pass test_pass_ = draw::Pass("adaptive_test_pass", gpu::State::WriteDepth);
+  draw::Pass spread_pass_ = draw::Pass("adaptive_spread_pass", gpu::State::WriteDepth);
+  draw::Pass depth_pass_ = draw::Pass("adaptive_depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual);
+  draw::Pass background_pass_ =
+      draw::Pass("adaptive_background_pass", gpu::State::WriteDepth | gpu::State::DepthFurther);
+  /** Instead of the film's own pass. */
+  draw::Pass sampled_pass_ =
+      draw::Pass("film_sampled_pass", gpu::State::WriteColor | gpu::State::BlendAdd | gpu::State::DepthNearerEqual);
+  draw::Pass converged_pass_ =
+      draw::Pass("film_converged_pass", gpu::State::WriteColor | gpu::State::BlendMultiply | gpu::State::DepthFurther);
+  /** \see sample_step */
+  int sample_step_ = 1;
+  bool is_whole_picture_ = false;
+  /** The first samples of the current picture were tested. */
+  bool is_tested_ = false;
+  bool is_active_ = false;
+  /** Sum of the filter weights that the converged pixels of the film have, as Film::share. */
+  double converged_share_ = 0.0;
+  /** Passes read these by reference. */
+  float sample_scale_ = 1.0F;
+  glm::vec4 factor_{1.0F};
+};
 
 }  // namespace gnomon::eevee

@@ -29,6 +29,7 @@ constexpr auto view_fields = std::to_array<Field>({
     {"view.depth_origin_ws", offsetof(ViewData, depth_origin_ws)},
     {"view.depth_origin", offsetof(ViewData, depth_origin)},
     {"view.place_middle", offsetof(ViewData, place_middle)},
+    {"view.mask_shift", offsetof(ViewData, mask_shift)},
     {"view.place_right", offsetof(ViewData, place_right)},
     {"view.place_up", offsetof(ViewData, place_up)},
 });
@@ -103,7 +104,9 @@ constexpr auto light_shape_fields = std::to_array<Field>({
     {"light_shapes.shapes[0].axis_x_ws", offsetof(LightShape, axis_x_ws)},
     {"light_shapes.shapes[0].extent", offsetof(LightShape, extent)},
     {"light_shapes.shapes[0].axis_y_ws", offsetof(LightShape, axis_y_ws)},
-    {"light_shapes.shapes[0]._pad0", offsetof(LightShape, _pad0)},
+    {"light_shapes.shapes[0].highlight_points_share", offsetof(LightShape, highlight_points_share)},
+    {"light_shapes.shapes[0].center_ws", offsetof(LightShape, center_ws)},
+    {"light_shapes.shapes[0].highlight_extent", offsetof(LightShape, highlight_extent)},
 });
 
 constexpr auto light_cluster_fields = std::to_array<Field>({

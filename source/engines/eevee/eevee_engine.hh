@@ -24,17 +24,14 @@ namespace gnomon::eevee {
  */
 [[nodiscard]] Settings offline_settings(int sample_count);
 
-struct CasterKind;
 struct Data;
-struct ObjectKind;
 struct PictureKey;
 struct SharedData;
-struct StorageList;
 
 /**
  * Draws a scene lit by its lamps with shadow maps and by its world. GPU resources are created by the first draw in
- * which an object or a background is visible. A view without both costs one clear. eevee_frame.cc lists the steps of a
- * frame.
+ * which an object or a background is visible. A view without both costs one clear. eevee_engine_data.cc
+ * lists the steps of a frame.
  *
  * Each call of draw_scene (through draw::Viewport::draw) with the same view draws one sample, or a part of it, until
  * the picture has `sample_count` samples or finish ends it. The engine offsets the samples within the pixels. Each call
@@ -118,61 +115,23 @@ class Engine final : public draw::Engine {
  private:
   friend class Inspection;
 
-  /** Create the film and its framebuffer. */
-  void make_film(draw::Viewport &viewport);
+  [[nodiscard]] Data &data_of(draw::Viewport &viewport) const;
   /** Start of a draw. \throws gpu::Error if the viewport was not synced, or its last sync failed. */
   void begin_draw(draw::Viewport &viewport);
-  /** The key of a picture of the current state, for StorageList::synced_picture. */
+  /** The key of a picture of the current state, for Data::synced_picture. */
   [[nodiscard]] PictureKey picture_key() const;
   /** If submitted work was lost, invalidate all results that it may have contained. */
   void take_losses(draw::Viewport &viewport);
-  void sync_lamps(SharedData &shared, const gpu::Limits &device_limits);
+  /** Plan the lights and their shadows if an input changed. */
+  void sync_lights(SharedData &shared);
   /** Create the resources and record the passes of a picture with a visible object, as far as their inputs changed. */
   void record(draw::Viewport &viewport);
-  void make_targets(draw::Viewport &viewport);
-  /** Derive StorageList::material_features, widest_class and transmissive if their inputs changed. */
-  void sync_materials(StorageList &stl) const;
   void make_blocks(draw::Viewport &viewport);
   void record_passes(draw::Viewport &viewport);
-  /** Features of programs that settings ask for. */
-  [[nodiscard]] Feature asked_features() const
-  {
-    return settings_.has_multiscatter ? Feature::Multiscatter : Feature::None;
-  }
-  /** Record the calls of all objects. */
-  void record_objects(draw::Viewport &viewport);
-  /** Make the groups for the objects of the kind of \a first. */
-  ObjectKind record_kind(draw::Viewport &viewport, draw::ObjectIndex first);
-  /**
-   * Whether the scene has deferred lighting: at least half of its meshes allow it. Where forward objects hide deferred
-   * ones, pixels are lit twice. Objects are not counted, so that edits of them do not change the programs.
-   */
-  [[nodiscard]] bool is_scene_deferred(Feature features) const;
-  /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
-  [[nodiscard]] bool is_lit_deferred(const StorageList &stl, const render_scene::RenderObject &object) const;
-  void record_deferred_lit(draw::Viewport &viewport);
-  /** Append the calls of an object that is blended: its backs, if they are drawn, and its fronts. */
-  void record_blended(Data &data, draw::ObjectIndex object, const ObjectKind &kind);
-  /** Let the blended objects be drawn from back to front, as \a view sees them. */
-  void order_blended(Data &data, const draw::View &view);
-  /** Record the film in \a pass: PassList::film_pass or film_sampled_pass. */
-  void record_film(draw::Viewport &viewport, draw::Pass &pass);
-  /** Create the resources of adaptive sampling, or destroy them. */
-  void make_adaptive(draw::Viewport &viewport);
-  void record_adaptive(draw::Viewport &viewport);
-  void record_background(draw::Viewport &viewport);
-  void record_casters(Data &data);
-  /** Make the call for the casters of the kind of \a first. */
-  CasterKind record_caster_kind(SharedData &shared, draw::ObjectIndex first);
-  void record_tonemap(draw::Viewport &viewport, const draw::View &view);
   /** \return false if only the steps for the device's feedback were drawn, because the feedback changes the picture. */
   bool draw_sample(draw::Viewport &viewport, const draw::View &view);
   void draw_target(draw::Viewport &viewport, const draw::View &view);
-  void add_casters(Data &data);
   void update_view(Data &data, const draw::View &view);
-  [[nodiscard]] bool has_all_samples(const Data &data, int samples_drawn) const;
-  /** \see radiance_scale */
-  [[nodiscard]] float sample_scale(const Data &data, int samples_drawn) const;
 
   render_scene::RenderScene &scene_;
   Settings settings_;
@@ -180,7 +139,7 @@ class Engine final : public draw::Engine {
   /** Shared by all viewports, and with engines that were made from this one. */
   std::shared_ptr<ShaderCache> shaders_;
   /** Owned by the viewports that draw with this engine. */
-  std::weak_ptr<SharedData> shared_;
+  mutable std::weak_ptr<SharedData> shared_;
 };
 
 /** The entry of this engine in a host's registry. \a scene must outlive all engines that the entry creates. */

@@ -50,6 +50,11 @@ enum class Feature : std::uint32_t {
   Multiscatter = 1U << 17,
   /** Pixels visit only the lights that can reach their froxel. The lights are in `light_texture`. */
   LightClusters = 1U << 18,
+  /**
+   * With several samples, a lamp with an extent may be reflected as a whole (HIGHLIGHT_LOBE_POINTS). It is a constant
+   * of programs with LampShape, and selects no variant: their interfaces are the same.
+   */
+  LampHighlights = 1U << 19,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

@@ -1,89 +1,121 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_film.hh"
+#include "eevee_resource_report.hh"
 
-#include <cmath>
-#include <numbers>
+#include "eevee_pixel_filter.hh"
 
 namespace gnomon::eevee {
 
-double filter_weight(double distance_px)
+void Film::sync(const Settings &settings)
 {
-  if (std::abs(distance_px) >= 0.5 * filter_support_px) {
-    return 0.0;
+  weight_sum_ = film_weight_sum(settings.sample_count, settings.seed);
+}
+
+void Film::make(gpu::Device &device, glm::ivec2 size_px)
+{
+  if (!framebuffer_) {
+    texture_ = create_target(device, "film", gpu::Format::RGBA32F, size_px);
+    framebuffer_ = device.create_framebuffer({.name = "film_fb", .colors = {{&texture_}}, .depth = {}});
   }
-  const double a = 2.0 * std::numbers::pi * distance_px / filter_support_px;
-  return 0.35875 + 0.48829 * std::cos(a) + 0.14128 * std::cos(2.0 * a) + 0.01168 * std::cos(3.0 * a);
 }
 
-/** The van der Corput sequence in base 2: the binary digits of \a index, reversed behind the binary point. In [0, 1).
- */
-static double radical_inverse(std::uint32_t index)
+void Film::resized()
 {
-  double inverse = 0.0;
-  for (double digit = 0.5; index != 0; index >>= 1, digit *= 0.5) {
-    inverse += (index & 1) != 0 ? digit : 0.0;
+  framebuffer_ = {};
+  texture_ = {};
+}
+
+void Film::record(const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,
+                  const gpu::Sampler &nearest)
+{
+  pass_.clear();
+  add_to(pass_, shader, radiance, origin_px, nearest);
+}
+
+void Film::add_to(draw::Pass &pass, const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,
+                  const gpu::Sampler &nearest) const
+{
+  draw::ShadingGroup &group = pass.group(shader);
+  group.bind_texture("radiance_texture", radiance, nearest);
+  group.constant("radiance_origin_px", origin_px);
+  group.constant_ref("column_weights", &columns_);
+  group.constant_ref("row_weights", &rows_);
+  group.call_procedural();
+}
+
+void Film::begin_picture()
+{
+  share_ = 0.0;
+  sample_count_ = 0;
+  is_finished_ = false;
+}
+
+void Film::set_weights(const FrameSample &sample)
+{
+  const FilmWeights weights =
+      film_weights(sample.index, sample.settings.sample_count, sample.settings.seed, weight_sum_);
+  columns_ = glm::vec4(weights.columns, 0.0F);
+  rows_ = glm::vec4(weights.rows, 0.0F);
+}
+
+void Film::count_sample(const Settings &settings, int sample_index, int count)
+{
+  share_ = share_with(settings, sample_index);
+  sample_count_ = count;
+}
+
+void Film::finish(const Settings &settings, int samples_drawn)
+{
+  is_finished_ = is_finished_ || (samples_drawn > 0 && !has_all_samples(settings, samples_drawn));
+}
+
+double Film::share_with(const Settings &settings, int sample_index) const
+{
+  return share_ + film_share(sample_index, settings.sample_count, settings.seed, weight_sum_);
+}
+
+bool Film::has_all_samples(const Settings &settings, int samples_drawn) const
+{
+  return is_finished_ || (settings.sample_count > 0 && samples_drawn >= settings.drawn_sample_count());
+}
+
+float Film::scale(const Settings &settings, int samples_drawn) const
+{
+  const bool has_counted_samples = settings.sample_count > 0 && samples_drawn >= settings.sample_count &&
+                                   settings.drawn_sample_count() == settings.sample_count;
+  return (has_counted_samples && !is_finished_) || share_ == 0.0 ? 1.0F : float(1.0 / share_);
+}
+
+Need Film::need(const FrameState &state) const
+{
+  if (state.skips_converged) {
+    return {false, "adaptive_film is drawn"};
   }
-  return inverse;
+  // A picture without visible objects and without a background is cleared once, with the first sample.
+  return state.is_seen ? Need{true, "samples of each pixel are added up"}
+                       : Need{sample_count_ == 0, "nothing is seen: the picture is cleared"};
 }
 
-glm::vec2 film_offset_px(int index, int count, std::uint32_t seed)
+FrameStep Film::step()
 {
-  if (count == 1) {
-    return {0.0F, 0.0F};
-  }
-  // A seed moves the lattice around the unit square.
-  const double shift_x = double(seed * 2654435761U) / 4294967296.0;
-  const double shift_y = double(seed * 2246822519U) / 4294967296.0;
-  const auto fraction = [](double value) { return value - std::floor(value); };
-  if (count == 0) {
-    // An extensible lattice in base 2. Its generating vector is that of Cools, Kuo and Nuyens, "Constructing embedded
-    // lattice rules for multivariate integration", 2006.
-    constexpr double generator = 182667.0;
-    const double inverse = radical_inverse(std::uint32_t(index));
-    return {float(fraction(inverse + 0.5 + shift_x) - 0.5), float(fraction(inverse * generator + 0.5 + shift_y) - 0.5)};
-  }
-  // A lattice of rank 1 by the golden ratio.
-  constexpr double golden = 0.6180339887498949;
-  return {float(fraction((index + 0.5) / count + shift_x) - 0.5), float(fraction(index * golden + shift_y) - 0.5)};
+  return {.name = "film",
+          .part = FrameStep::Part::Last,
+          .need = [this](const FrameState &state) { return need(state); },
+          .reads = {"radiance"},
+          .writes = {"film"},
+          .passes = {{&pass_, "samples"}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                set_weights(sample);
+                record_pass(sample, list, framebuffer_,
+                            {.color_load = sample_count_ == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load,
+                             .scissor = sample.viewport.region()});
+              }};
 }
 
-namespace {
-
-/** Filter weights, along one axis, of the samples in the previous pixel, the pixel itself and the next pixel. */
-glm::dvec3 axis_weights(double offset_px)
+void Film::report(ResourceReport &report) const
 {
-  return {filter_weight(offset_px - 1.0), filter_weight(offset_px), filter_weight(offset_px + 1.0)};
-}
-
-double sum(const glm::dvec3 &weights)
-{
-  return weights.x + weights.y + weights.z;
-}
-
-}  // namespace
-
-double film_weight_sum(int count, std::uint32_t seed)
-{
-  if (count == 0) {
-    return film_share(0, 1, seed, 1.0);
-  }
-  double total = 0.0;
-  for (int i = 0; i < count; i++) {
-    total += film_share(i, count, seed, 1.0);
-  }
-  return total;
-}
-
-double film_share(int index, int count, std::uint32_t seed, double weight_sum)
-{
-  const glm::vec2 offset_px = film_offset_px(index, count, seed);
-  return sum(axis_weights(offset_px.x)) * sum(axis_weights(offset_px.y)) / weight_sum;
-}
-
-FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum)
-{
-  const glm::vec2 offset_px = film_offset_px(index, count, seed);
-  return {glm::vec3(axis_weights(offset_px.x) / weight_sum), glm::vec3(axis_weights(offset_px.y))};
+  report.add_target(texture_, "film", "the picture", "");
 }
 
 }  // namespace gnomon::eevee

@@ -1,47 +1,74 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-
-#include <cstdint>
+#include "eevee_frame.hh"
 
 namespace gnomon::eevee {
 
-/** Diameter of the pixel filter's support, pixels. Cycles and EEVEE define it as a filter width of 1.5 px. */
-inline constexpr double filter_support_px = 3.0;
+/** The picture of a viewport: the sum of its samples, weighted by the pixel filter. Internal to the engine. */
+class Film {
+ public:
+  /** For pictures with \a settings from now on. */
+  void sync(const Settings &settings);
+  /** Create the texture, unless it exists. */
+  void make(gpu::Device &device, glm::ivec2 size_px);
+  /** Destroy what depends on the size of the picture. */
+  void resized();
+  /** Record the film's own pass. \see add_to */
+  void record(const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,
+              const gpu::Sampler &nearest);
+  /** Record in \a pass that \a radiance is added to the film. \a origin_px: its pixel at pixel (0, 0) of the film */
+  void add_to(draw::Pass &pass, const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,
+              const gpu::Sampler &nearest) const;
 
-/** The Blackman-Harris window (Harris 1978): 1 at the centre, 0 from filter_support_px / 2 on. */
-[[nodiscard]] double filter_weight(double distance_px);
+  void report(ResourceReport &report) const;
+  void begin_picture();
+  /** Set the filter weights of \a sample, which the passes of add_to read. */
+  void set_weights(const FrameSample &sample);
+  /** The sample with the index \a sample_index is whole, and is the last of \a count samples. */
+  void count_sample(const Settings &settings, int sample_index, int count);
+  /** \see Engine::finish */
+  void finish(const Settings &settings, int samples_drawn);
 
-/**
- * Offset of the \a index-th of \a count samples from the centre of its pixel, in [-0.5, 0.5) pixels. A single sample is
- * at the centre. Several samples form a lattice that covers the square evenly. \a count 0 selects a lattice sequence
- * for an unknown number of samples: all of its prefixes cover the square evenly. \a seed shifts the lattice or
- * sequence.
- */
-[[nodiscard]] glm::vec2 film_offset_px(int index, int count, std::uint32_t seed);
+  /** Empty before make. */
+  [[nodiscard]] const gpu::Texture &texture() const
+  {
+    return texture_;
+  }
+  /** Whole samples in the texture. */
+  [[nodiscard]] int sample_count() const
+  {
+    return sample_count_;
+  }
+  /** Sum of the filter weights of the samples so far, in units of those of all samples. \see Engine::sample_share */
+  [[nodiscard]] double share() const
+  {
+    return share_;
+  }
+  /** share() with the sample with the index \a sample_index. */
+  [[nodiscard]] double share_with(const Settings &settings, int sample_index) const;
+  [[nodiscard]] bool has_all_samples(const Settings &settings, int samples_drawn) const;
+  /** \see Engine::radiance_scale */
+  [[nodiscard]] float scale(const Settings &settings, int samples_drawn) const;
 
-/** Weights of one sample's three columns and three rows of pixels around a pixel. */
-struct FilmWeights {
-  glm::vec3 columns{0.0F};
-  glm::vec3 rows{0.0F};
+  /** Adds the sample to all pixels. */
+  [[nodiscard]] FrameStep step();
+
+ private:
+  [[nodiscard]] Need need(const FrameState &state) const;
+
+  gpu::Texture texture_;
+  gpu::Framebuffer framebuffer_;
+  draw::Pass pass_ = draw::Pass("film_pass", gpu::State::WriteColor | gpu::State::BlendAdd);
+  /** Filter weights of the current sample. Passes read them by reference. */
+  glm::vec4 columns_{0.0F};
+  glm::vec4 rows_{0.0F};
+  /** \see film_weight_sum */
+  double weight_sum_ = 0.0;
+  double share_ = 0.0;
+  int sample_count_ = 0;
+  /** finish ended the picture. */
+  bool is_finished_ = false;
 };
-
-/**
- * Sum of the unnormalised weights of all \a count samples: the divisor of film_weights. For \a count 0, the weight of a
- * single sample at the centre, so that the weights of n samples sum to about n.
- */
-[[nodiscard]] double film_weight_sum(int count, std::uint32_t seed);
-
-/**
- * Weights of the \a index-th sample. A pixel is the filtered mean of all samples within the filter's support around its
- * centre, including samples in neighbouring pixels. With a known count, the weights of all samples sum to 1.
- * \a weight_sum: film_weight_sum of the same count and seed.
- */
-[[nodiscard]] FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum);
-
-/** Sum of film_weights of the \a index-th sample over its nine pixels. */
-[[nodiscard]] double film_share(int index, int count, std::uint32_t seed, double weight_sum);
 
 }  // namespace gnomon::eevee

@@ -1,28 +1,46 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_engine.hh"
 #include "eevee_lamp_points.hh"
+#include "eevee_settings.hh"
+#include "eevee_shaders.hh"
 
-#include "draw_view_shared.h"
+#include "draw_viewport.hh"
+#include "render_scene.hh"
 
-#include <algorithm>
+#include <functional>
+#include <optional>
 #include <span>
+#include <string_view>
+#include <vector>
 
 /**
  * The frame as an ordered list of steps. Drawing, timings, `--explain`, `--json` and serialize_passes all read this
- * list. A new pass needs one entry in the list and one member of PassList. Internal to the engine.
+ * list. A step is described by the module that draws it; eevee_engine_data.cc has their order. Internal to the engine.
  */
 namespace gnomon::eevee {
 
-struct Data;
-struct FramebufferList;
-struct PassList;
+struct ResourceReport;
 
-/** The state from which the needs of steps and passes are decided. */
+/** The state from which the needs of steps and passes are decided, beside that of their modules. */
 struct FrameState {
   const Settings &settings;
-  const Data &data;
+  /** Of the frame. */
+  Feature features = Feature::None;
+  /** An object or a background was visible in at least one sample of the current picture. */
+  bool is_seen = false;
+  /** A surface that transmits light is in the view of the current sample. */
+  bool is_transmission_seen = false;
+  /** A material that is drawn transmits light. */
+  bool has_transmission = false;
+  /** A sun has the cascades that Settings::has_cascade_tint shows. */
+  bool has_tinted_light = false;
+  /** Lamps have other points in each sample. */
+  bool has_lamp_points = false;
+  /** Objects cast other shadows in each sample, because they are blended. */
+  bool has_blended_casters = false;
+  /** Converged pixels of the current picture are skipped. \see AdaptiveSampling */
+  bool skips_converged = false;
 };
 
 /** Whether a step is needed, and the reason why it is or is not. */
@@ -31,34 +49,50 @@ struct Need {
   std::string_view reason;
 };
 
+struct DrawnStep;
+
 /** The sample that is being drawn. */
-struct FrameSample {
-  Data &data;
-  const Settings &settings;
+struct FrameSample : FrameState {
   draw::Viewport &viewport;
   /** The view of the picture and its guard band, without the sample's offset. */
   const draw::View &view;
   /** The view with the sample's offset within the pixel. */
   const draw::View &sample_view;
+  /** Of the scene. */
+  const scene::Bounds &bounds_ws;
+  /** Of the sample in the picture. */
+  int index = 0;
+  /** The visible objects of the view that was recorded last. */
+  draw::VisibleObjects &visible;
   /** If true, only the steps with `is_read_back` are drawn. */
   bool is_for_feedback = false;
+  /** Suns are fitted to depths, and the host does not have those of `view` yet. */
+  bool awaits_depths = false;
   /** Set by the step lamp_points. Empty where no lamp has a point of its own. */
-  SampledLampPoints lamp_points{};
+  std::span<const LampPoint> lamp_points{};
+  /** The step that is being drawn. */
+  DrawnStep *step = nullptr;
+
+  /** The region that steps before the transmission of light draw: all, where that reads other pixels. */
+  [[nodiscard]] gpu::Rectangle read_region() const
+  {
+    return is_transmission_seen ? gpu::Rectangle() : viewport.part_region();
+  }
 };
 
 /** A pass of a step. The passes of one step share a target and a timer. */
 struct FramePass {
-  draw::Pass PassList::*pass;
+  const draw::Pass *pass;
   /** The reason to draw the pass, for reports. */
   std::string_view purpose;
-  /** Returns the reason why the pass has no calls, for reports. */
-  std::string (*why_empty)(const FrameState &);
+  /** The reason why the pass has no calls, for reports. Empty: nothing is seen. */
+  std::function<std::string_view(const FrameState &)> why_empty{};
 };
 
 struct FrameStep {
   std::string_view name;
   /** EachSample: drawn with each sample of the picture. EachTarget: drawn with each draw that has a target. */
-  enum class When { EachSample, EachTarget } when;
+  enum class When { EachSample, EachTarget } when = When::EachSample;
   /**
    * The time of a step in a sample that is drawn in parts. First: with its first part. Rows: with each part, the rows
    * of which it draws, if any. Each: with each part, because another viewport may have drawn between two parts. Last:
@@ -66,77 +100,107 @@ struct FrameStep {
    */
   enum class Part { First, Rows, Each, Last } part;
   /** Decides whether the step is drawn. Called before each sample or target. */
-  Need (*need)(const FrameState &);
+  std::function<Need(const FrameState &)> need;
   /** Names of the resources that the step reads and writes, as in reports. */
-  std::span<const std::string_view> reads;
-  std::span<const std::string_view> writes;
+  std::vector<std::string_view> reads{};
+  std::vector<std::string_view> writes{};
   /** In the order in which they are drawn. */
-  std::span<const FramePass> passes;
-  /** Appends the step's render passes to \a list. */
-  void (*record)(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
-  /** Called after the submission of the list; may be nullptr. */
-  void (*submitted)(FrameSample &sample) = nullptr;
+  std::vector<FramePass> passes{};
+  /** Appends the step's render passes to the list. May be empty. */
+  std::function<void(FrameSample &, gpu::CommandList &)> record{};
+  /** Called after the submission of the list. May be empty. */
+  std::function<void(FrameSample &)> submitted{};
   /** The result of the step is read back to the host. */
   bool is_read_back = false;
-  /** Work on the device that command lists cannot hold, after the list; may be nullptr. */
-  void (*work)(FrameSample &sample) = nullptr;
+  /** Work on the device that command lists cannot hold, after the list. May be empty. */
+  std::function<void(FrameSample &)> work{};
 };
 
-/** All steps, in the order in which they are drawn. */
-[[nodiscard]] std::span<const FrameStep> frame_steps();
-
-/** Whether \a part of a sample draws a step with \a step. */
-[[nodiscard]] bool is_in_part(FrameStep::Part step, const draw::SamplePart &part);
-
-/** Record of a step over the samples of the current picture. */
-struct StepRecord {
-  Need need;
+/** A step, and what it did in the samples of the current picture. */
+struct DrawnStep {
+  FrameStep step;
+  /** Empty before the first sample. It is needed if at least one sample needed it. */
+  std::optional<Need> need{};
   struct PassRecord {
     /** Number of samples, or parts of samples, in which the pass drew at least one call. */
     std::uint64_t runs = 0;
     draw::RecordCounts counts;
   };
   /** One entry for each of FrameStep::passes. */
-  std::vector<PassRecord> passes;
+  std::vector<PassRecord> passes{};
+  /** Empty unless the step was timed. */
+  gpu::TimerQuery query{};
+  /** The step was timed since the last call of Inspection::take_step_times. */
+  bool is_pending = false;
+  /** The last result of Inspection::take_step_times; empty if the backend measures no times (null backend). */
+  std::optional<double> taken_seconds{};
 
-  void reset()
+  /** The need in the current picture, or in one that begins with \a state. */
+  [[nodiscard]] Need need_in(const FrameState &state) const
   {
-    need = {};
-    std::ranges::fill(passes, PassRecord());
+    return need ? *need : step.need(state);
   }
 };
 
-/** Draw the needed steps of \a when, and store the need and the counts of each step in Data::frame. */
-void draw_steps(FrameSample &sample, FrameStep::When when);
+/** The steps of a viewport's frame, in the order in which they are drawn. */
+class Frame {
+ public:
+  explicit Frame(std::vector<FrameStep> steps);
+
+  void begin_picture();
+  /** \see draw::Pass::is_current */
+  [[nodiscard]] bool is_current(const gpu::Device &device) const;
+  /** Draw the needed steps of \a when, and keep the need and the counts of each step. */
+  void draw(FrameSample &sample, FrameStep::When when);
+  [[nodiscard]] const std::vector<DrawnStep> &steps() const
+  {
+    return steps_;
+  }
+  /** \see Inspection::take_step_times */
+  [[nodiscard]] std::vector<DrawnStep> &timed_steps()
+  {
+    return steps_;
+  }
+
+ private:
+  std::vector<DrawnStep> steps_;
+};
+
+/** Append the visible calls of the current step's passes to \a list, and count them. */
+void record_calls(FrameSample &sample, const draw::View &view, gpu::CommandList &list);
 
 /** Append a render pass that draws the calls of the step's passes that are visible in the sample's view. */
-void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
-                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions);
+void record_pass(FrameSample &sample, gpu::CommandList &list, const gpu::Framebuffer &framebuffer,
+                 const gpu::PassActions &actions);
 
-/** Set the filter weights of the sample, which the passes of the film read. */
-void update_film_weights(FrameSample &sample);
+/** Actions of a render pass that draws over what is there. */
+[[nodiscard]] inline gpu::PassActions drawn_over(const gpu::Rectangle &scissor = {})
+{
+  return {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load, .scissor = scissor};
+}
 
 /** The reason why \a pass was drawn or not, for reports. */
-[[nodiscard]] std::string reason_of(const FramePass &pass, const StepRecord::PassRecord &record,
-                                    const FrameState &state);
+[[nodiscard]] std::string_view reason_of(const FramePass &pass, const DrawnStep::PassRecord &record,
+                                         const FrameState &state);
 
-/** Edge of a pixel, metres: at a distance of 1 m for perspective views, at any distance for orthographic views. */
-[[nodiscard]] float pixel_size(const draw::View &view, const draw::Viewport &viewport);
+inline gpu::Texture create_target(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
+{
+  return device.create_texture({.name = name, .format = format, .width = size_px.x, .height = size_px.y});
+}
 
-/** The view of the \a index-th sample of the picture. \a drawn_view: of the picture and its guard band. */
-[[nodiscard]] draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport,
-                                        const Settings &settings, int index);
+/** Binds the resources that a program with lighting reads, except the textures of the material. */
+using BindLit = std::function<void(draw::ShadingGroup &)>;
 
-/** The content of `view_block`. \a bounds_ws: of the scene. */
-[[nodiscard]] shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index,
-                                         const scene::Bounds &bounds_ws);
+/** Names of the textures that shadows are drawn into, for FrameStep::reads. */
+[[nodiscard]] std::vector<std::string_view> shadow_targets();
 
 inline constexpr const char *nothing_seen = "nothing is seen";
+inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";
+inline constexpr std::string_view why_forward =
+    "most meshes have textures or other inputs, shadows are exponential, or nothing gives light";
+inline constexpr std::string_view all_in_gbuffer = "all objects are in the G-buffer";
 
 /** The reason why no lamp has a shadow: \a no_such_lamp if shadows are enabled and at least one lamp gives light. */
 [[nodiscard]] std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp);
-
-/** Whether suns are fitted to depths and the host does not have the depths of \a view yet. */
-[[nodiscard]] bool awaits_depths(const Data &data, const draw::View &view);
 
 }  // namespace gnomon::eevee

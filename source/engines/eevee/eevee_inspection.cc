@@ -20,33 +20,15 @@ namespace gnomon::eevee {
 
 Data &Inspection::engine_data() const
 {
-  return viewport_.engine_data<Data>(engine_);
+  return engine_.data_of(viewport_);
 }
 
 /** Index in Lamps::lights. Empty where the lamp gives no light, or the viewport was never synced. */
 static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
 {
-  if (!data.shared) {
-    return std::nullopt;
-  }
-  const Lamps &lamps = data.shared->lamps;
+  const Lamps &lamps = data.shared->lights.plan().lamps;
   const auto found = std::ranges::find(lamps.lamp_index, std::uint32_t(lamp));
   return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
-}
-
-/** Append passes that draw the depths of \a view, and \a pass where they are equal. */
-static void record_at_depths(Data &data, const draw::View &view, std::string_view name, draw::Pass &pass,
-                             const gpu::Framebuffer &framebuffer, gpu::CommandList &list)
-{
-  list.begin_pass("depth_prepass", data.fbl.depth_fb, {});
-  data.psl->depth_pass.record(view, list);
-  data.psl->depth_pass_cull.record(view, list);
-  data.psl->gbuffer_pass.record(view, list);
-  data.psl->transmission_depth_pass.record(view, list);
-  list.end_pass();
-  list.begin_pass(name, framebuffer, {.depth_load = gpu::LoadAction::Load});
-  pass.record(view, list);
-  list.end_pass();
 }
 
 /** The pixels of the picture from a texture with a guard band. */
@@ -73,34 +55,34 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   GNOMON_ASSERT(engine_.settings_.has_probe, "the settings ask for no probe");
   Data &data = engine_data();
   engine_.begin_draw(viewport_);
-  StorageList &stl = data.stl;
   const std::optional<std::size_t> light = light_of(data, lamp);
-  if (!light || stl.objects.empty()) {
+  if (!light || data.surfaces.objects().empty()) {
     return std::nullopt;
   }
   engine_.record(viewport_);
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
   const draw::View sample_view = inspected_view(data, view, viewport_, engine_.settings_, sample);
-  stl.probed_light = light_entry(data, int(*light), probed_entry);
   engine_.update_view(data, sample_view);
   gpu::CommandList list;
   SharedData &shared = *data.shared;
   if (sample) {
-    shared.sample_index = *sample;
-    shared.sample_seed = int(engine_.settings_.seed);
-    stl.shadows->invalidate_blended();
+    shared.shadow_pass.set_sample(*sample, engine_.settings_.seed);
+    data.shadows.invalidate_blended();
   }
   const SampledLampPoints sampled =
-      sample ? shared.lamp_points.sample(std::uint32_t(*sample), engine_.settings_.seed) : shared.lamp_points.centers();
-  write_lamp_points(data, sampled, device, list);
-  write_light_entry(data, sampled, int(*light), probed_entry, list);
-  const PictureDepths depths = sample ? data.depth_feedback.picture(viewport_.drawn_size_px()) : PictureDepths();
-  stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, sampled.points, depths);
-  record_at_depths(data, sample_view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
+      sample ? shared.lights.plan().points.sample(std::uint32_t(*sample), engine_.settings_.seed)
+             : shared.lights.plan().points.centers();
+  shared.lights.write_points(sampled, device, list);
+  shared.lights.write_entry(sampled, int(*light), probed_entry, list);
+  const PictureDepths depths = sample ? data.depth.feedback().picture(viewport_.drawn_size_px()) : PictureDepths();
+  data.shadows.update(device, view, pixel_size(view, viewport_), shared.shadow_pass.pass(), list, sampled.points,
+                      depths);
+  data.probe.draw_visibility(sample_view, shared.lights.entry_of(int(*light), probed_entry), list);
   device.submit(list);
-  stl.shadows->submitted();
-  return Probe{read_picture(viewport_, data.txl.probe_position), read_picture(viewport_, data.txl.probe_normal)};
+  data.shadows.submitted();
+  return Probe{read_picture(viewport_, data.probe.visibility()[0]),
+               read_picture(viewport_, data.probe.visibility()[1])};
 }
 
 std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std::optional<int> sample) const
@@ -108,7 +90,7 @@ std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std
   GNOMON_ASSERT(engine_.settings_.has_surfaces, "the settings ask for no surfaces");
   Data &data = engine_data();
   engine_.begin_draw(viewport_);
-  if (data.stl.objects.empty()) {
+  if (data.surfaces.objects().empty()) {
     return std::nullopt;
   }
   engine_.record(viewport_);
@@ -117,10 +99,10 @@ std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std
   engine_.update_view(data, view);
   gpu::Device &device = viewport_.device();
   gpu::CommandList list;
-  record_at_depths(data, view, "surfaces", data.psl->surfaces_pass, data.fbl.surfaces_fb, list);
+  data.probe.draw_surfaces(view, list);
   device.submit(list);
-  return Surfaces{read_picture(viewport_, data.txl.surface_position), read_picture(viewport_, data.txl.surface_normal),
-                  read_picture(viewport_, data.txl.surface_albedo)};
+  const std::array<gpu::Texture, 3> &seen = data.probe.surfaces();
+  return Surfaces{read_picture(viewport_, seen[0]), read_picture(viewport_, seen[1]), read_picture(viewport_, seen[2])};
 }
 
 double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const
@@ -130,7 +112,8 @@ double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &positio
   if (!light) {
     return 0.0;
   }
-  const auto sizes = data.stl.shadows->texel_sizes(data.shared->lamps.lights[*light], std::span(&position_ws, 1));
+  const auto sizes =
+      data.shadows.texel_sizes(data.shared->lights.plan().lamps.lights[*light], std::span(&position_ws, 1));
   return sizes ? sizes->front() : 0.0;
 }
 
@@ -164,15 +147,15 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
   if (!index) {
     return std::nullopt;
   }
-  if (!data.stl.shadows->texel_sizes(data.shared->lamps.lights[*index], {})) {
+  if (!data.shadows.texel_sizes(data.shared->lights.plan().lamps.lights[*index], {})) {
     return std::nullopt;
   }
   const std::optional<Surfaces> seen = surfaces(picture_view);
   if (!seen) {
     return std::nullopt;
   }
-  const shared::LightData &light = data.shared->lamps.lights[*index];
-  const shared::LightShape &shape = data.shared->lamps.shapes[*index];
+  const shared::LightData &light = data.shared->lights.plan().lamps.lights[*index];
+  const shared::LightShape &shape = data.shared->lights.plan().lamps.shapes[*index];
   const scene::Scene &scene = engine_.scene_.scene();
   const double pixel = double(pixel_size(viewport_.drawn_view(picture_view), viewport_));
   std::vector<float> density(seen->position_depth.size(), 0.0F);
@@ -201,7 +184,7 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
     positions_ws.emplace_back(position_ws);
     pixel_sizes.push_back(pixel * depth);
   }
-  const std::vector<double> texels = data.stl.shadows->texel_sizes(light, positions_ws).value();
+  const std::vector<double> texels = data.shadows.texel_sizes(light, positions_ws).value();
   for (std::size_t k = 0; k < receivers.size(); k++) {
     density[receivers[k]] = texels[k] > 0.0 ? float(pixel_sizes[k] / texels[k]) : 0.0F;
   }
@@ -211,42 +194,40 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
 const Shadows &Inspection::shadows() const
 {
   const Data &data = engine_data();
-  GNOMON_ASSERT(data.stl.shadows, "the viewport was never synced");
-  return *data.stl.shadows;
+  GNOMON_ASSERT(data.synced_picture, "the viewport was never synced");
+  return data.shadows;
 }
 
 void Inspection::invalidate_shadows() const
 {
-  if (const Data &data = engine_data(); data.shared) {
-    data.shared->shadows.invalidate();
-  }
+  engine_data().shared->shadows.invalidate();
 }
 
 std::string Inspection::serialize_passes() const
 {
   const Data &data = engine_data();
   std::string text;
-  if (!data.psl) {
+  if (!data.synced_picture) {
     return text;
   }
-  text += data.shared->shadow_pass.serialize(viewport_.device());
+  text += data.shared->shadow_pass.pass().serialize(viewport_.device());
   // Some steps draw passes of earlier steps again.
   std::set<const draw::Pass *> printed;
-  for (const FrameStep &step : frame_steps()) {
-    for (const FramePass &pass : step.passes) {
-      const draw::Pass &recorded = (*data.psl).*pass.pass;
-      text += printed.insert(&recorded).second ? recorded.serialize(viewport_.device()) : std::string();
+  for (const DrawnStep &drawn : data.frame.steps()) {
+    for (const FramePass &pass : drawn.step.passes) {
+      text += printed.insert(pass.pass).second ? pass.pass->serialize(viewport_.device()) : std::string();
     }
   }
-  text += data.psl->probe_pass.serialize(viewport_.device());
-  text += data.psl->surfaces_pass.serialize(viewport_.device());
+  for (const draw::Pass *pass : data.probe.passes()) {
+    text += pass->serialize(viewport_.device());
+  }
   return text;
 }
 
 static std::optional<ShadowLayers> layers_of(const Data &data, std::size_t lamp)
 {
   const std::optional<std::size_t> light = light_of(data, lamp);
-  return light ? data.stl.shadows->layers(data.shared->lamps.lights[*light]) : std::nullopt;
+  return light ? data.shadows.layers(data.shared->lights.plan().lamps.lights[*light]) : std::nullopt;
 }
 
 std::vector<std::string> Inspection::shadow_layers(std::size_t lamp) const
@@ -290,19 +271,19 @@ const gpu::Texture &Inspection::shadow_picture(std::size_t lamp, std::optional<s
 std::optional<std::size_t> Inspection::tinted_sun() const
 {
   const Data &data = engine_data();
-  if (!data.shared || !data.shared->tinted_light) {
+  if (!data.shared->lights.plan().tinted) {
     return std::nullopt;
   }
-  return data.shared->lamps.lamp_index[std::size_t(*data.shared->tinted_light)];
+  return data.shared->lights.plan().lamps.lamp_index[std::size_t(*data.shared->lights.plan().tinted)];
 }
 
 std::vector<StepTime> Inspection::take_step_times() const
 {
   std::vector<StepTime> times;
-  for (Timing::Step &step : engine_data().timing.steps) {
-    if (std::exchange(step.is_pending, false)) {
-      step.taken_seconds = step.query ? viewport_.device().take_seconds(step.query) : std::nullopt;
-      times.push_back({step.name, step.taken_seconds.value_or(0.0)});
+  for (DrawnStep &drawn : engine_data().frame.timed_steps()) {
+    if (std::exchange(drawn.is_pending, false)) {
+      drawn.taken_seconds = drawn.query ? viewport_.device().take_seconds(drawn.query) : std::nullopt;
+      times.push_back({std::string(drawn.step.name), drawn.taken_seconds.value_or(0.0)});
     }
   }
   return times;

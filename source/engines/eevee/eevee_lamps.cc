@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_lamps.hh"
 
+#include "eevee_lamp_points.hh"
+#include "eevee_shape_shared.h"
 #include "shadows/shadow_cube.hh"
 #include "shadows/shadow_plan.hh"
 
@@ -61,7 +63,7 @@ shared::LightData light_data(const scene::PlacedLamp &lamp)
 
 void leave_out(shared::LightData &light)
 {
-  // Sampled directions of the world also reflect `world_levels`, which are then black: update_world.
+  // Sampled directions of the world also reflect `world_levels`, which are then black: SceneWorld.
   light.color = glm::vec3(0.0F);
 }
 
@@ -199,6 +201,34 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading,
                                        dropped.size() + light_count_max, light_count_max, listed(dropped)));
   }
   return lamps;
+}
+
+void set_highlights(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t end, int sample_count,
+                    const scene::Bounds &receivers_ws)
+{
+  for (std::size_t i = 0; i < lamps.shapes.size(); i++) {
+    const std::size_t index = lamps.lamp_index[i];
+    if (index >= end || !has_extent(placed[index])) {
+      continue;
+    }
+    const scene::PlacedLamp &lamp = placed[index];
+    shared::LightShape &shape = lamps.shapes[i];
+    const bool is_sun = lamp.kind == scene::LampKind::Sun;
+    const shared::LightShape whole = light_shape(lamp, LampShading::Whole);
+    shape.highlight_points_share = HIGHLIGHT_LOBE_POINTS / float(sample_count);
+    shape.center_ws = glm::vec3(lamp.world_from_lamp[is_sun ? 2 : 3]);
+    shape.highlight_extent = whole.extent;
+    const glm::vec3 to_receivers = glm::clamp(shape.center_ws, receivers_ws.min, receivers_ws.max) - shape.center_ws;
+    const float distance_sq = is_sun ? 1.0F : glm::dot(to_receivers, to_receivers);
+    const bool is_rectangle = lamps.lights[i].kind == LIGHT_RECTANGLE;
+    const float area = shared::flat_lamp_area(whole.axis_x_ws, whole.axis_y_ws, is_rectangle);
+    const float solid_angle =
+        lamp.kind == scene::LampKind::Area
+            ? shared::flat_lamp_solid_angle(area, distance_sq)
+            : shared::round_lamp_solid_angle(shared::round_lamp_tangent(whole.extent, distance_sq));
+    lamps.highlight_alpha =
+        std::max(lamps.highlight_alpha, shared::highlight_alpha(shape.highlight_points_share, solid_angle));
+  }
 }
 
 void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind)

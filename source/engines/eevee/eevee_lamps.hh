@@ -77,6 +77,8 @@ struct Lamps {
   std::vector<std::uint32_t> lamp_index;
   /** Features that the lamps need, without those of shadows. */
   Feature features = Feature::None;
+  /** Specular lobes of this alpha and wider ones reflect no lamp as a whole. \see set_highlights */
+  float highlight_alpha = 0.0F;
   /** One message for each lamp that cannot be drawn. */
   std::vector<std::string> warnings;
   /** A message that names the lamps that exceed the limit. */
@@ -100,6 +102,13 @@ struct Lamps {
  */
 [[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole,
                                std::size_t light_count_max = LIGHT_COUNT_MAX);
+
+/**
+ * Let the lamps with an extent whose index is below \a end have highlights as a whole, in a picture of \a sample_count
+ * samples. \a placed: the argument of make_lamps, with LampShading::Point. \a receivers_ws: a box around all surfaces.
+ */
+void set_highlights(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t end, int sample_count,
+                    const scene::Bounds &receivers_ws);
 
 /** Set LightData::kind of the lights of lamps whose index is at least \a first and below \a end. */
 void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind);

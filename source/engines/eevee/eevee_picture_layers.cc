@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_picture_layers.hh"
 
-#include "eevee_film.hh"
+#include "eevee_pixel_filter.hh"
 
 #include <glm/common.hpp>
 

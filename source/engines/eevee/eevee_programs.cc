@@ -51,13 +51,13 @@ constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 constexpr std::array<ShaderDeclaration, 27> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
-    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
+    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_shadow_frag.glsl",
      caster_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
+     "eevee/eevee_shadow_frag.glsl", caster_features, Feature::None,
      "depth of what a lamp sees, all layers in one pass"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
-     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_shadow_frag.glsl", caster_features, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
      light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers | Feature::Transmission,
@@ -300,6 +300,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   if (has(features & declaration.features, Feature::ShadowPcf)) {
     desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
     desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
+  }
+  if (has(features & declaration.features, Feature::LampShape)) {
+    desc.defines.push_back(fmt::format("HAS_LAMP_HIGHLIGHTS {}", int(has(features, Feature::LampHighlights))));
   }
   return desc;
 }

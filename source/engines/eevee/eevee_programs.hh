@@ -100,7 +100,10 @@ struct SurfaceFunctionFault {
 /** The first directive in \a text that a surface function may not have: it is part of a file with a version. */
 [[nodiscard]] std::optional<SurfaceFunctionFault> surface_function_fault(std::string_view text);
 
-/** The description of one variant for gpu::Device::create_shader. \a pcf is used only with Feature::ShadowPcf. */
+/**
+ * The description of one variant for gpu::Device::create_shader. \a pcf is used only with Feature::ShadowPcf. \a
+ * features may contain Feature::LampHighlights.
+ */
 [[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features,
                                           const PcfKernel &pcf = {});
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
-#include "eevee_frame_needs.hh"
 #include "eevee_material_variants.hh"
 #include "eevee_report_source.hh"
 #include "eevee_surface_functions.hh"
@@ -79,18 +78,20 @@ FrameNode program_nodes(const ReportSource &source)
   return node;
 }
 
-FrameNode pass_node(const FrameStep &step, const StepRecord &record, const FramePass &pass, const FrameState &state)
+FrameNode pass_node(const DrawnStep &drawn, std::size_t index, const FrameState &state)
 {
-  const StepRecord::PassRecord &of_pass = record.passes[std::size_t(&pass - step.passes.data())];
-  const draw::Pass &drawn = (*state.data.psl).*pass.pass;
-  return {
-      .what = drawn.name(), .is_made = of_pass.runs > 0, .why = reason_of(pass, of_pass, state), .count = of_pass.runs};
+  const FramePass &pass = drawn.step.passes[index];
+  const DrawnStep::PassRecord &record = drawn.passes[index];
+  return {.what = pass.pass->name(),
+          .is_made = record.runs > 0,
+          .why = std::string(reason_of(pass, record, state)),
+          .count = record.runs};
 }
 
 FrameNode shadow_step_node(const ReportSource &source, const Need &need)
 {
   std::uint64_t layers = 0;
-  for (const ShadowState &state : source.data.stl.shadows->states()) {
+  for (const ShadowState &state : source.data.shadows.states()) {
     layers += std::uint64_t(std::popcount(state.drawn_now));
   }
   return {.what = "shadows",
@@ -102,37 +103,32 @@ FrameNode shadow_step_node(const ReportSource &source, const Need &need)
 FrameNode pass_nodes(const ReportSource &source)
 {
   const Data &data = source.data;
-  const FrameState state{source.settings, data};
+  const FrameState state = data.state(source.settings);
   std::vector<FrameNode> nodes;
-  for (std::size_t i = 0; i < frame_steps().size(); i++) {
-    const FrameStep &step = frame_steps()[i];
-    const StepRecord record =
-        i < data.frame.size() ? data.frame[i]
-                              : StepRecord{step.need(state), std::vector<StepRecord::PassRecord>(step.passes.size())};
+  for (const DrawnStep &drawn : data.frame.steps()) {
+    const FrameStep &step = drawn.step;
+    const Need need = drawn.need_in(state);
     FrameNode node;
     if (step.name == "shadows") {
-      node = shadow_step_node(source, record.need);
+      node = shadow_step_node(source, need);
     }
     else if (step.passes.empty()) {
-      node = {.what = std::string(step.name), .is_made = record.need.is_needed, .why = std::string(record.need.reason)};
+      node = {.what = std::string(step.name), .is_made = need.is_needed, .why = std::string(need.reason)};
     }
     else if (step.passes.size() == 1) {
-      node = pass_node(step, record, step.passes.front(), state);
+      node = pass_node(drawn, 0, state);
       node.what = step.name;
-      node.why = record.need.reason;
+      node.why = need.reason;
     }
     else {
       std::vector<FrameNode> passes;
-      for (const FramePass &pass : step.passes) {
-        passes.push_back(pass_node(step, record, pass, state));
+      for (std::size_t i = 0; i < step.passes.size(); i++) {
+        passes.push_back(pass_node(drawn, i, state));
       }
-      const std::string reason(record.need.reason);
-      node = folder(std::string(step.name), reason, record.need.is_needed ? nothing_seen : reason, std::move(passes));
+      const std::string reason(need.reason);
+      node = folder(std::string(step.name), reason, need.is_needed ? nothing_seen : reason, std::move(passes));
     }
-    const auto time = std::ranges::find(data.timing.steps, step.name, &Timing::Step::name);
-    if (time != data.timing.steps.end()) {
-      node.seconds = time->taken_seconds;
-    }
+    node.seconds = drawn.taken_seconds;
     nodes.push_back(std::move(node));
   }
   return folder("passes", "runs of the last picture", nothing_seen, std::move(nodes));
@@ -149,8 +145,8 @@ void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t m
 
 FrameNode lamp_node(const ReportSource &source, std::size_t index, const std::vector<ShadowState> &states)
 {
-  const scene::PlacedLamp &lamp = source.data.shared->placed[index];
-  const Lamps &lamps = source.data.shared->lamps;
+  const scene::PlacedLamp &lamp = source.data.shared->lights.plan().placed[index];
+  const Lamps &lamps = source.data.shared->lights.plan().lamps;
   FrameNode node{.what = lamp.name};
   const auto light = std::ranges::find(lamps.lamp_index, std::uint32_t(index));
   if (light == lamps.lamp_index.end()) {
@@ -182,9 +178,9 @@ FrameNode lamp_node(const ReportSource &source, std::size_t index, const std::ve
 
 FrameNode shadow_nodes(const ReportSource &source)
 {
-  const std::vector<ShadowState> states = source.data.stl.shadows->states();
+  const std::vector<ShadowState> states = source.data.shadows.states();
   std::vector<FrameNode> lamps;
-  for (std::size_t i = 0; i < source.data.shared->placed.size(); i++) {
+  for (std::size_t i = 0; i < source.data.shared->lights.plan().placed.size(); i++) {
     lamps.push_back(lamp_node(source, i, states));
   }
   return folder("shadows", "layers by lamp", why_no_shadow(source, "no lamp has a layer that is drawn"),
@@ -194,11 +190,10 @@ FrameNode shadow_nodes(const ReportSource &source)
 FrameNode draw_nodes(const ReportSource &source)
 {
   std::vector<FrameNode> passes;
-  for (std::size_t i = 0; i < source.data.frame.size(); i++) {
-    const FrameStep &step = frame_steps()[i];
-    for (std::size_t j = 0; j < step.passes.size(); j++) {
-      const draw::RecordCounts counts = source.data.frame[i].passes[j].counts;
-      const draw::Pass &pass = (*source.data.psl).*step.passes[j].pass;
+  for (const DrawnStep &drawn : source.data.frame.steps()) {
+    for (std::size_t i = 0; i < drawn.passes.size(); i++) {
+      const draw::RecordCounts counts = drawn.passes[i].counts;
+      const draw::Pass &pass = *drawn.step.passes[i].pass;
       if (counts.drawn + counts.culled == 0 || !pass.has_objects()) {
         continue;
       }
@@ -227,14 +222,13 @@ Report Inspection::report() const
   render_scene::RenderScene &scene = engine_.scene_;
   const ShaderCache &shaders = *engine_.shaders_;
   const Settings &settings = engine_.settings_;
-  const StorageList &stl = data.stl;
   Report report;
-  if (!data.psl) {
+  if (!data.synced_picture) {
     report.tree = {.what = "frame", .why = "the viewport was never synced"};
     return report;
   }
   const SharedData &shared = *data.shared;
-  const Lamps &lamps = shared.lamps;
+  const Lamps &lamps = shared.lights.plan().lamps;
   const SceneShadows &shadows = shared.shadows;
   report.warnings = lamps.warnings;
   report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
@@ -249,7 +243,7 @@ Report Inspection::report() const
     report.warnings.push_back(std::move(line));
   }
   std::set<scene::Handle<scene::Mesh>> meshes;
-  for (const draw::ObjectIndex object : stl.objects) {
+  for (const draw::ObjectIndex object : data.surfaces.objects()) {
     const scene::Handle<scene::Mesh> handle = scene.object(object).mesh;
     if (!meshes.insert(handle).second) {
       continue;
@@ -275,41 +269,42 @@ Report Inspection::report() const
   }
   report.limits = lamps.limits;
   report.limits.insert(report.limits.end(), shadows.limits().begin(), shadows.limits().end());
-  if (stl.blend_ordered && stl.blend_ordered->visible.size() > render_scene::blend_order_exact_max) {
+  if (data.blend.ordered_count() > render_scene::blend_order_exact_max) {
     report.limits.push_back(
         fmt::format("{} blended objects are in the view: more than {} are ordered by distance alone",
-                    stl.blend_ordered->visible.size(), render_scene::blend_order_exact_max));
+                    data.blend.ordered_count(), render_scene::blend_order_exact_max));
   }
-  report.shadow_counters = stl.shadows->counters();
-  report.pass_recordings = stl.pass_recordings;
+  report.shadow_counters = data.shadows.counters();
+  report.pass_recordings = data.pass_recordings;
   for (int i = 0; i < lamps.light_count(); i++) {
-    const scene::PlacedLamp &lamp = shared.placed[lamps.lamp_index[std::size_t(i)]];
+    const scene::PlacedLamp &lamp = shared.lights.plan().placed[lamps.lamp_index[std::size_t(i)]];
     const bool is_asked_for = shadow_kind(lamp, settings.shadow) != scene::ShadowKind::None;
     report.lost_shadow_count += is_asked_for && lamps.lights[std::size_t(i)].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
 
   const ReportSource source{scene, shaders, settings, data, viewport_};
+  auto [targets, blocks] = resource_nodes(source);
   report.tree = folder("frame", "the picture", "",
-                       {program_nodes(source), pass_nodes(source), target_nodes(source), block_nodes(source),
+                       {program_nodes(source), pass_nodes(source), std::move(targets), std::move(blocks),
                         mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
 
   const auto part = [&](std::string what, bool is_made, std::string why, std::string why_not) {
     report.parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
   };
-  const Feature f = stl.features;
+  const Feature f = data.features;
   const bool is_recorded = data.is_recorded;
   const std::string no_shadow = settings.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   const auto why_not = [&](std::string reason) { return is_recorded ? std::move(reason) : nothing_seen; };
-  part("light_block", bool(shared.light_block), fmt::format("{} lights", lamps.light_count()),
+  part("light_block", bool(shared.lights.block()), fmt::format("{} lights", lamps.light_count()),
        !has(f, Feature::Light)          ? "no lamp gives light"
        : has(f, Feature::LightClusters) ? "the lights are in light_texture"
                                         : nothing_seen);
-  part("light_texture", bool(shared.light_texture), fmt::format("{} lights", lamps.light_count()),
+  part("light_texture", bool(shared.lights.texture()), fmt::format("{} lights", lamps.light_count()),
        has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
-  const bool has_emission = shared.emission.surfaces() != nullptr;
+  const bool has_emission = shared.lights.emission().surfaces() != nullptr;
   part("light of emissive surfaces", has_emission,
        has_emission ? fmt::format("{} points in each sample, chosen from {} patches", settings.emissive_point_count,
-                                  shared.emission.surfaces()->patch_count())
+                                  shared.lights.emission().surfaces()->patch_count())
                     : "",
        settings.emissive_point_count == 0     ? "not asked for"
        : settings.planned_sample_count() == 1 ? "a picture of one sample has none"
@@ -321,28 +316,26 @@ Report Inspection::report() const
   part("shadow_esm", shadows.octahedral().size() > 0,
        fmt::format("{} point lamps or spots", shadows.octahedral().size()),
        has(f, Feature::ShadowEsm) ? nothing_seen : no_shadow);
-  part("shadow_pass", !shared.shadow_pass.is_empty(), "casters for the lamps' shadows",
+  part("shadow_pass", !shared.shadow_pass.pass().is_empty(), "casters for the lamps' shadows",
        has(f, any_shadow) ? nothing_seen : "no shadow");
-  part("gbuffer_pass", !data.psl->gbuffer_pass.is_empty(), "opaque objects without textures",
-       why_not(std::string(why_forward)));
-  part("depth_pass", !data.psl->depth_pass.is_empty(), "two-sided materials",
-       why_not("no object with a two-sided material outside of the G-buffer"));
-  part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
-       why_not("no object with a one-sided material outside of the G-buffer"));
+  for (const FramePass &pass : data.depth.passes()) {
+    part(pass.pass->name(), !pass.pass->is_empty(), std::string(pass.purpose),
+         why_not(std::string(pass.why_empty(data.state(settings)))));
+  }
   part("base colour textures", scene.images().count() > 0,
        fmt::format("{} images that materials look up", scene.images().count()),
        why_not("no lit or cut out material has one"));
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? why_not("every material is Lambertian") : "no lamp gives light");
-  part("cascade tint", !data.psl->tint_pass.is_empty(), "asked for",
-       !settings.has_cascade_tint ? "not asked for"
-       : shared.tinted_light      ? nothing_seen
-                                  : "no sun has a shadow");
+  part("cascade tint", data.surfaces.has_tint(), "asked for",
+       !settings.has_cascade_tint    ? "not asked for"
+       : shared.lights.plan().tinted ? nothing_seen
+                                     : "no sun has a shadow");
   part("film", is_recorded,
        settings.sample_count == 0 ? "samples until the host ends the picture"
                                   : fmt::format("{} samples a pixel", settings.sample_count),
        nothing_seen);
-  part("tonemap", !data.psl->tonemap.is_empty(), "a target was given", data.target ? nothing_seen : no_target);
+  part("tonemap", data.output.is_recorded(), "a target was given", data.output.target() ? nothing_seen : no_target);
   part("programs", shaders.size() > 0, fmt::format("{} programs", shaders.size()), nothing_seen);
   return report;
 }

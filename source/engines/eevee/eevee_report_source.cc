@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reasons why parts of a frame were left out.
 #include "eevee_report_source.hh"
-#include "eevee_frame_needs.hh"
 
 #include <fmt/format.h>
 
@@ -29,13 +28,13 @@ FrameNode folder(std::string what, std::string why, std::string why_not, std::ve
 
 std::string why_no_shadow(const ReportSource &source, std::string_view no_such_lamp)
 {
-  return std::string(eevee::why_no_shadow(FrameState{source.settings, source.data}, no_such_lamp));
+  return std::string(eevee::why_no_shadow(source.data.state(source.settings), no_such_lamp));
 }
 
 std::set<std::pair<scene::Handle<scene::Image>, scene::ImageUse>> read_images(const ReportSource &source)
 {
   std::set<std::pair<scene::Handle<scene::Image>, scene::ImageUse>> images;
-  for (const draw::ObjectIndex object : source.data.stl.objects) {
+  for (const draw::ObjectIndex object : source.data.surfaces.objects()) {
     const scene::Material &material = source.scene().material_of(source.mesh(object));
     for (const scene::TextureInput &input : scene::texture_inputs) {
       const scene::TextureSlot &slot = material.*input.slot;
@@ -61,7 +60,7 @@ std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &i
 std::string why_no_feature(const ReportSource &source, Feature feature)
 {
   if (feature == Feature::TargetDepth) {
-    return source.data.target ? "the target takes no depth" : no_target;
+    return source.data.output.target() ? "the target takes no depth" : no_target;
   }
   if (feature == Feature::BaseColorTexture && source.data.is_recorded && read_images(source).empty()) {
     return "no material that is drawn has a texture";
@@ -114,13 +113,13 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
     case ShaderId::Surfaces: return source.settings.has_surfaces ? nothing_seen : "not asked for";
     case ShaderId::DebugShadow: return "not asked for";
     case ShaderId::DebugCascades:
-      return source.data.shared->tinted_light
+      return source.data.shared->lights.plan().tinted
                  ? nothing_seen
                  : (source.settings.has_cascade_tint ? "no sun has a shadow" : "not asked for");
     case ShaderId::BackgroundColor:
     case ShaderId::BackgroundWorld:
       return source.settings.background.kind == Background::Kind::None ? "no background was asked for" : nothing_seen;
-    case ShaderId::Tonemap: return source.data.target ? nothing_seen : no_target;
+    case ShaderId::Tonemap: return source.data.output.target() ? nothing_seen : no_target;
     default: break;
   }
   if (!source.data.is_recorded) {
@@ -141,7 +140,7 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
     case ShaderId::EvsmSeparable: return source.has(Feature::ShadowEvsm) ? other_kernel : no_evsm;
     case ShaderId::DepthFunction: return "no surface function can cut a material out";
     case ShaderId::Depth:
-    case ShaderId::Lit: return has_gbuffer(source.data) ? std::string(all_in_gbuffer) : nothing_seen;
+    case ShaderId::Lit: return source.data.depth.has_gbuffer() ? std::string(all_in_gbuffer) : nothing_seen;
     case ShaderId::GBuffer:
     case ShaderId::DeferredLit: return std::string(why_forward);
     default: return nothing_seen;

@@ -6,6 +6,7 @@
 #include "eevee_frame.hh"
 #include "eevee_frame_tree.hh"
 
+#include <array>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,9 +16,6 @@
 namespace gnomon::eevee {
 
 inline constexpr const char *no_target = "no target was given";
-inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";
-
-inline constexpr const char *no_surface_function = "no material that is drawn has a surface function";
 
 /** The state from which reports are made. */
 struct ReportSource {
@@ -41,7 +39,7 @@ struct ReportSource {
   }
   [[nodiscard]] bool has(Feature feature) const
   {
-    return eevee::has(data.stl.features, feature);
+    return eevee::has(data.features, feature);
   }
 };
 
@@ -63,8 +61,8 @@ struct ReportSource {
 
 // Nodes of the report for resources on the device.
 
-[[nodiscard]] FrameNode target_nodes(const ReportSource &source);
-[[nodiscard]] FrameNode block_nodes(const ReportSource &source);
+/** Textures, and blocks. */
+[[nodiscard]] std::array<FrameNode, 2> resource_nodes(const ReportSource &source);
 [[nodiscard]] FrameNode mesh_nodes(const ReportSource &source);
 [[nodiscard]] FrameNode texture_nodes(const ReportSource &source);
 

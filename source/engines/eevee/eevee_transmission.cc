@@ -1,88 +1,117 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_transmission.hh"
-
-#include "eevee_engine_data.hh"
+#include "eevee_resource_report.hh"
 
 #include <algorithm>
 #include <bit>
 
 namespace gnomon::eevee {
 
-void make_behind(Data &data, const draw::Viewport &viewport)
+Need need_of_transmission(const FrameState &state, bool is_needed, std::string_view why, std::string_view why_not)
 {
-  gpu::Device &device = viewport.device();
-  TextureList &txl = data.txl;
-  const glm::ivec2 size_px = viewport.drawn_size_px();
-  const int levels = data.stl.is_transmission_rough ? std::bit_width(unsigned(std::max(size_px.x, size_px.y))) : 1;
-  if (txl.behind && txl.behind.desc().mip_levels == levels) {
-    return;
-  }
-  txl.behind = device.create_texture({.name = "behind",
-                                      .format = txl.radiance.desc().format,
-                                      .width = size_px.x,
-                                      .height = size_px.y,
-                                      .mip_levels = levels});
-  txl.behind_sampler =
-      device.create_sampler({.name = "behind_sampler", .filter = gpu::Filter::Linear, .mip = gpu::MipFilter::Nearest});
-}
-
-/** The need of a step that is needed if \a is_needed and something in the view transmits light. */
-static Need need_of(const FrameState &state, bool is_needed, std::string_view why, std::string_view why_not)
-{
-  if (!state.data.is_seen) {
+  if (!state.is_seen) {
     return {false, nothing_seen};
   }
-  if (!state.data.is_transmission_seen) {
-    return {false, state.data.stl.transmissive.empty() ? "no material that is drawn transmits light"
-                                                       : "nothing in the view transmits light"};
+  if (!state.is_transmission_seen) {
+    return {false, !state.has_transmission ? "no material that is drawn transmits light"
+                                           : "nothing in the view transmits light"};
   }
   return {is_needed, is_needed ? why : why_not};
 }
 
-Need need_blend_behind(const FrameState &state)
+Transmission::Transmission(draw::ObjectBuffer &objects, const RenderBuffers &buffers)
+    : buffers_(buffers),
+      depth_pass_("transmission_depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual, &objects),
+      pass_("transmission_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects)
 {
-  return need_of(state, !state.data.psl->blend_pass.is_empty() && !state.data.stl.groups_behind.empty(),
-                 "blended objects that are seen through others",
-                 "no blended object is behind all that transmits light");
 }
 
-void record_blend_behind(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+void Transmission::make(const draw::Viewport &viewport, bool is_rough)
 {
-  StorageList &stl = sample.data.stl;
-  draw::Pass &pass = sample.data.psl->blend_pass;
-  pass.set_order(stl.groups_behind);
-  record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
-  pass.set_order(stl.groups_in_front);
+  const glm::ivec2 size_px = viewport.drawn_size_px();
+  const int levels = is_rough ? std::bit_width(unsigned(std::max(size_px.x, size_px.y))) : 1;
+  if (behind_ && behind_.desc().mip_levels == levels) {
+    return;
+  }
+  gpu::Device &device = viewport.device();
+  behind_ = device.create_texture({.name = "behind",
+                                   .format = buffers_.radiance.desc().format,
+                                   .width = size_px.x,
+                                   .height = size_px.y,
+                                   .mip_levels = levels});
+  sampler_ =
+      device.create_sampler({.name = "behind_sampler", .filter = gpu::Filter::Linear, .mip = gpu::MipFilter::Nearest});
 }
 
-Need need_behind(const FrameState &state)
+void Transmission::free()
 {
-  return need_of(state, true, "what is behind surfaces that transmit light", "");
+  behind_ = {};
 }
 
-void copy_behind(FrameSample &sample)
+void Transmission::clear()
 {
-  const TextureList &txl = sample.data.txl;
-  gpu::Device &device = sample.viewport.device();
-  device.copy_layers(txl.radiance, txl.behind);
-  if (txl.behind.desc().mip_levels > 1) {
-    device.generate_mipmaps(txl.behind);
+  depth_pass_.clear();
+  pass_.clear();
+}
+
+void Transmission::bind(draw::ShadingGroup &group) const
+{
+  if (behind_) {
+    group.bind_texture("behind", behind_, sampler_);
   }
 }
 
-Need need_transmission(const FrameState &state)
+static std::string_view why_empty(const FrameState & /*state*/)
 {
-  return need_of(state, !state.data.psl->transmission_pass.is_empty(), "surfaces that transmit light",
-                 "all that transmits light is blended");
+  return "no object that is not blended transmits light";
 }
 
-void record_transmission(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+FramePass Transmission::depths() const
 {
-  record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.color_load = gpu::LoadAction::Load,
-               .depth_load = gpu::LoadAction::Load,
-               .scissor = sample.viewport.part_region()});
+  return {&depth_pass_, "the nearest surface alone is seen", why_empty};
+}
+
+FrameStep Transmission::copy_step()
+{
+  return {.name = "behind",
+          .part = FrameStep::Part::Rows,
+          .need =
+              [](const FrameState &state) {
+                return need_of_transmission(state, true, "what is behind surfaces that transmit light", "");
+              },
+          .reads = {"radiance"},
+          .writes = {"behind"},
+          .work =
+              [this](FrameSample &sample) {
+                gpu::Device &device = sample.viewport.device();
+                device.copy_layers(buffers_.radiance, behind_);
+                if (behind_.desc().mip_levels > 1) {
+                  device.generate_mipmaps(behind_);
+                }
+              }};
+}
+
+FrameStep Transmission::step()
+{
+  return {.name = "transmission",
+          .part = FrameStep::Part::Rows,
+          .need =
+              [this](const FrameState &state) {
+                return need_of_transmission(state, !pass_.is_empty(), "surfaces that transmit light",
+                                            "all that transmits light is blended");
+              },
+          .reads = {"behind"},
+          .writes = {"depth", "radiance"},
+          .passes = {depths(), {&pass_, "objects in the view", why_empty}},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                record_pass(sample, list, buffers_.main_fb, drawn_over(sample.viewport.part_region()));
+              }};
+}
+
+void Transmission::report(ResourceReport &report) const
+{
+  report.add_target(behind_, "behind", "what is seen through surfaces", report.why_no_feature(Feature::Transmission));
 }
 
 }  // namespace gnomon::eevee

@@ -2,23 +2,57 @@
 #pragma once
 
 #include "eevee_frame.hh"
+#include "eevee_renderbuffers.hh"
 
-/**
- * The steps of a frame for surfaces that transmit light. They read a copy of the picture without them; so one of them
- * is not seen through another. Internal to the engine.
- */
 namespace gnomon::eevee {
 
-/** Blended objects that are behind everything that transmits light, so that they are in the copy. */
-[[nodiscard]] Need need_blend_behind(const FrameState &state);
-void record_blend_behind(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+/**
+ * Surfaces that transmit light. They read a copy of the picture without them; so one of them is not seen through
+ * another: decision 0019. Internal to the engine.
+ */
+class Transmission {
+ public:
+  Transmission(draw::ObjectBuffer &objects, const RenderBuffers &buffers);
+  /** Create the copy, with mip levels if a surface \a is_rough. */
+  void make(const draw::Viewport &viewport, bool is_rough);
+  /** Destroy the copy. */
+  void free();
+  /** Remove all calls. */
+  void clear();
+  void bind(draw::ShadingGroup &group) const;
 
-/** The copy, with the means of rough surfaces. */
-[[nodiscard]] Need need_behind(const FrameState &state);
-void copy_behind(FrameSample &sample);
+  void report(ResourceReport &report) const;
+  /** Copy of the radiance before these surfaces are drawn. Empty until one is seen: then nothing reads it. */
+  [[nodiscard]] const gpu::Texture &behind() const
+  {
+    return behind_;
+  }
+  [[nodiscard]] draw::Pass &depth_pass()
+  {
+    return depth_pass_;
+  }
+  [[nodiscard]] draw::Pass &pass()
+  {
+    return pass_;
+  }
+  /** The pass of their depths, for other steps. */
+  [[nodiscard]] FramePass depths() const;
 
-/** The surfaces and their depth. */
-[[nodiscard]] Need need_transmission(const FrameState &state);
-void record_transmission(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+  /** The copy, with the means of rough surfaces. */
+  [[nodiscard]] FrameStep copy_step();
+  /** The surfaces and their depth. */
+  [[nodiscard]] FrameStep step();
+
+ private:
+  const RenderBuffers &buffers_;
+  gpu::Texture behind_;
+  gpu::Sampler sampler_;
+  draw::Pass depth_pass_;
+  draw::Pass pass_;
+};
+
+/** The need of a step that is needed if \a is_needed and something in the view transmits light. */
+[[nodiscard]] Need need_of_transmission(const FrameState &state, bool is_needed, std::string_view why,
+                                        std::string_view why_not);
 
 }  // namespace gnomon::eevee

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_world.hh"
+#include "eevee_resource_report.hh"
 
-#include "eevee_engine.hh"
-#include "eevee_world_shared.h"
+#include "eevee_settings.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 
@@ -34,57 +36,6 @@ std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world
   return lamps;
 }
 
-void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
-                  Feature features, const Settings &settings)
-{
-  using render_scene::WorldLight;
-  const int sample_count = settings.planned_sample_count();
-  const bool is_black = !settings.light.has(LightPart::Kind::World);
-  if (std::exchange(resources.is_black, is_black) != is_black ||
-      std::exchange(resources.revision, scene.world_revision()) != scene.world_revision() ||
-      std::exchange(resources.sample_count, sample_count) != sample_count || !has(features, Feature::World)) {
-    resources.block = {};
-    resources.levels = {};
-  }
-  if (!has(features, Feature::World)) {
-    return;
-  }
-  const WorldLight &world = *scene.world();
-  if (!resources.block) {
-    shared::WorldBlock block{};
-    for (std::size_t i = 0; i < world.harmonics.size() && !is_black; i++) {
-      block.harmonics[i] = glm::vec4(world.harmonics[i], 0.0F);
-    }
-    block.is_sampled = sample_count > 1 ? 1 : 0;
-    const double lobe_share = world_lobe_directions / (double(world_direction_count) * sample_count);
-    block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
-    resources.block = device.create_buffer({"world_block", gpu::BufferKind::Uniform, sizeof(block)});
-    device.update(resources.block, block);
-  }
-  if (!has(features, Feature::Specular)) {
-    resources.levels = {};
-  }
-  else if (!resources.levels) {
-    resources.levels = device.create_texture({.name = "world_levels",
-                                              .kind = gpu::TextureKind::Array,
-                                              .format = gpu::Format::RGBA32F,
-                                              .width = WorldLight::size.x,
-                                              .height = WorldLight::size.y,
-                                              .layers = WORLD_LEVEL_COUNT});
-    resources.sampler =
-        device.create_sampler({.name = "world_sampler", .filter = gpu::Filter::Linear, .wrap_u = gpu::Wrap::Repeat});
-    const auto levels = render_scene::prefiltered(world.rest, WORLD_LEVEL_COUNT);
-    for (std::size_t i = 0; i < levels.size(); i++) {
-      std::vector<glm::vec4> texels;
-      texels.reserve(levels[i].size());
-      for (const glm::vec3 &texel : levels[i]) {
-        texels.emplace_back(is_black ? glm::vec3(0.0F) : texel, 1.0F);
-      }
-      device.upload(resources.levels, int(i), std::as_bytes(std::span(texels)));
-    }
-  }
-}
-
 bool has_background(const Settings &settings, const render_scene::RenderScene &scene)
 {
   return settings.light.has(LightPart::Kind::World) &&
@@ -92,11 +43,90 @@ bool has_background(const Settings &settings, const render_scene::RenderScene &s
           (settings.background.kind == Background::Kind::World && scene.scene().world()));
 }
 
-glm::vec3 background_color(const Settings &settings, const render_scene::RenderScene &scene)
+void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings)
 {
-  return settings.background.kind == Background::Kind::Color
-             ? settings.background.color
-             : scene.scene().world()->strength * scene.scene().world()->color;
+  const Key key{scene.world_revision(), settings.planned_sample_count(), !settings.light.has(LightPart::Kind::World)};
+  if (std::exchange(key_, key) != key || !has(features, Feature::World)) {
+    block_ = {};
+    levels_ = {};
+  }
+  if (!has(features, Feature::World)) {
+    return;
+  }
+  if (!block_) {
+    make_block(scene);
+  }
+  if (!has(features, Feature::Specular)) {
+    levels_ = {};
+  }
+  else if (!levels_) {
+    make_levels(scene);
+  }
+}
+
+void SceneWorld::make_block(const render_scene::RenderScene &scene)
+{
+  const render_scene::WorldLight &world = *scene.world();
+  shared::WorldBlock block{};
+  for (std::size_t i = 0; i < world.harmonics.size() && !key_.is_black; i++) {
+    block.harmonics[i] = glm::vec4(world.harmonics[i], 0.0F);
+  }
+  block.is_sampled = key_.sample_count > 1 ? 1 : 0;
+  const double lobe_share = world_lobe_directions / (double(world_direction_count) * key_.sample_count);
+  block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
+  block_ = scene.device().create_buffer({"world_block", gpu::BufferKind::Uniform, sizeof(block)});
+  scene.device().update(block_, block);
+}
+
+void SceneWorld::make_levels(const render_scene::RenderScene &scene)
+{
+  using render_scene::WorldLight;
+  gpu::Device &device = scene.device();
+  levels_ = device.create_texture({.name = "world_levels",
+                                   .kind = gpu::TextureKind::Array,
+                                   .format = gpu::Format::RGBA32F,
+                                   .width = WorldLight::size.x,
+                                   .height = WorldLight::size.y,
+                                   .layers = WORLD_LEVEL_COUNT});
+  sampler_ =
+      device.create_sampler({.name = "world_sampler", .filter = gpu::Filter::Linear, .wrap_u = gpu::Wrap::Repeat});
+  const auto levels = render_scene::prefiltered(scene.world()->rest, WORLD_LEVEL_COUNT);
+  for (std::size_t i = 0; i < levels.size(); i++) {
+    std::vector<glm::vec4> texels;
+    texels.reserve(levels[i].size());
+    for (const glm::vec3 &texel : levels[i]) {
+      texels.emplace_back(key_.is_black ? glm::vec3(0.0F) : texel, 1.0F);
+    }
+    device.upload(levels_, int(i), std::as_bytes(std::span(texels)));
+  }
+}
+
+void SceneWorld::bind(draw::ShadingGroup &group) const
+{
+  if (block_) {
+    group.bind_uniform("world_block", block_);
+  }
+  if (levels_) {
+    group.bind_texture("world_levels", levels_, sampler_);
+  }
+}
+
+void SceneWorld::write_suns(std::span<const shared::WorldSunPoint> points, int first_sun, bool is_left_out,
+                            gpu::CommandList &list) const
+{
+  struct {
+    int first_sun = 0;
+    int sun_count = 0;
+    std::array<shared::WorldSunPoint, std::size_t(WORLD_SUN_MAX) * WORLD_SUN_POINTS> points{};
+  } values;
+  static_assert(sizeof(values) == sizeof(shared::WorldBlock) - offsetof(shared::WorldBlock, first_sun));
+  if (!block_) {
+    return;
+  }
+  values.first_sun = first_sun;
+  values.sun_count = is_left_out ? 0 : int(points.size()) / WORLD_SUN_POINTS;
+  std::ranges::copy(points, values.points.begin());
+  list.update(block_, offsetof(shared::WorldBlock, first_sun), std::as_bytes(std::span(&values, 1)));
 }
 
 /** The texels of \a picture, rows from the bottom. Takes every n-th texel if an edge is longer than \a size_max. */
@@ -114,24 +144,31 @@ static std::pair<glm::ivec2, std::vector<glm::vec4>> texels_of(const scene::Worl
   return {size, std::move(texels)};
 }
 
-void update_world_picture(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
-                          const Settings &settings)
+void SceneWorld::update_picture(const render_scene::RenderScene &scene, const Settings &settings)
 {
-  const bool is_shown =
-      settings.background.kind == Background::Kind::World && scene.scene().world() && scene.scene().world()->picture;
-  if (!is_shown || resources.picture_revision != scene.scene().world_revision()) {
-    resources.picture = {};
+  const std::optional<scene::World> &world = scene.scene().world();
+  const bool is_shown = settings.background.kind == Background::Kind::World && world && world->picture;
+  if (!is_shown || picture_revision_ != scene.scene().world_revision()) {
+    picture_ = {};
   }
-  if (!is_shown || resources.picture) {
+  if (!is_shown || picture_) {
     return;
   }
-  const auto [size, texels] = texels_of(*scene.scene().world()->picture, device.limits().texture_size_max);
-  resources.picture = device.create_texture(
+  gpu::Device &device = scene.device();
+  const auto [size, texels] = texels_of(*world->picture, device.limits().texture_size_max);
+  picture_ = device.create_texture(
       {.name = "world_picture", .format = gpu::Format::RGBA32F, .width = size.x, .height = size.y});
-  resources.picture_sampler = device.create_sampler(
+  picture_sampler_ = device.create_sampler(
       {.name = "world_picture_sampler", .filter = gpu::Filter::Linear, .wrap_u = gpu::Wrap::Repeat});
-  device.upload(resources.picture, 0, std::as_bytes(std::span(texels)));
-  resources.picture_revision = scene.scene().world_revision();
+  device.upload(picture_, 0, std::as_bytes(std::span(texels)));
+  picture_revision_ = scene.scene().world_revision();
+}
+
+void SceneWorld::report(ResourceReport &report) const
+{
+  report.add_target(levels_, "world_levels", "specular reflection of the world",
+                    report.why_no_feature(report.has(Feature::World) ? Feature::Specular : Feature::World));
+  report.add_block(block_, "world_block", "light from all around", report.why_no_feature(Feature::World));
 }
 
 }  // namespace gnomon::eevee

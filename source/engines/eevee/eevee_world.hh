@@ -3,12 +3,14 @@
 
 #include "eevee_lamps.hh"
 
-#include "gpu_device.hh"
+#include "draw_pass.hh"
+#include "eevee_world_shared.h"
 #include "render_scene.hh"
 
 /** Light of the scene's world, and the background of a picture. \see render_world.hh */
 namespace gnomon::eevee {
 
+struct ResourceReport;
 struct Settings;
 
 /** Number of directions of WorldLight::rest in each sample of a picture with several samples. */
@@ -22,37 +24,62 @@ inline constexpr double world_lobe_directions = 12.0;
  */
 [[nodiscard]] std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading);
 
-/** Resources of a world that shaders read. */
-struct WorldResources {
-  gpu::Buffer block;
-  /** Prefiltered levels for specular reflection. Empty without specular materials. */
-  gpu::Texture levels;
-  gpu::Sampler sampler;
-  /** RenderScene::world_revision from which `block` and `levels` were made. */
-  std::uint64_t revision = 0;
-  int sample_count = 0;
-  /** The light of the world is left out: `block` and `levels` hold black. */
-  bool is_black = false;
-  /** The picture of the background, rows from the bottom. */
-  gpu::Texture picture;
-  gpu::Sampler picture_sampler;
-  /** Scene::world_revision from which `picture` was made. */
-  std::uint64_t picture_revision = 0;
-};
-
-/**
- * Create the resources of the scene's world that \a features need, and free the others.
- * \pre with Feature::World, the scene has a world
- */
-void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
-                  Feature features, const Settings &settings);
-
 /** Whether pixels without a surface show a background. */
 [[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
-/** The radiance of the background, or the factor of the world's picture. \pre has_background */
-[[nodiscard]] glm::vec3 background_color(const Settings &settings, const render_scene::RenderScene &scene);
-/** Create the picture of the background if it is shown and changed; free it if it is not shown. */
-void update_world_picture(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
-                          const Settings &settings);
+
+/** The scene's world on the device. Internal to the engine. */
+class SceneWorld {
+ public:
+  /**
+   * Create the resources of the world's light that \a features need, and free the others.
+   * \pre with Feature::World, the scene has a world
+   */
+  void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings);
+  /** Create the picture of the background if it is shown and changed; free it if it is not shown. */
+  void update_picture(const render_scene::RenderScene &scene, const Settings &settings);
+  void bind(draw::ShadingGroup &group) const;
+  /**
+   * Write the members of `world_block` that change with each sample. \a points: WORLD_SUN_POINTS of each sun.
+   * \a first_sun: index of its light
+   */
+  void write_suns(std::span<const shared::WorldSunPoint> points, int first_sun, bool is_left_out,
+                  gpu::CommandList &list) const;
+  void report(ResourceReport &report) const;
+
+  /** The picture of the background, rows from the bottom. Empty if none is shown. */
+  [[nodiscard]] const gpu::Texture &picture() const
+  {
+    return picture_;
+  }
+  [[nodiscard]] const gpu::Sampler &picture_sampler() const
+  {
+    return picture_sampler_;
+  }
+
+ private:
+  void make_block(const render_scene::RenderScene &scene);
+  void make_levels(const render_scene::RenderScene &scene);
+
+  /** What `block_` and `levels_` were made from. */
+  struct Key {
+    /** RenderScene::world_revision. */
+    std::uint64_t world = 0;
+    int sample_count = 0;
+    /** The light of the world is left out: `block_` and `levels_` hold black. */
+    bool is_black = false;
+
+    bool operator==(const Key &) const = default;
+  };
+  Key key_;
+  /** Empty without Feature::World. */
+  gpu::Buffer block_;
+  /** Prefiltered levels for specular reflection. Empty without specular materials. */
+  gpu::Texture levels_;
+  gpu::Sampler sampler_;
+  gpu::Texture picture_;
+  gpu::Sampler picture_sampler_;
+  /** Scene::world_revision from which `picture_` was made. */
+  std::uint64_t picture_revision_ = 0;
+};
 
 }  // namespace gnomon::eevee

@@ -8,7 +8,7 @@ namespace gnomon::unlit {
 namespace {
 
 constexpr std::array<ShaderDeclaration, 3> declarations = {{
-    {ShaderId::Depth, "unlit_depth", "eevee/eevee_depth_vert.glsl", "eevee/eevee_depth_frag.glsl",
+    {ShaderId::Depth, "unlit_depth", "eevee/eevee_depth_vert.glsl", "eevee/eevee_shadow_frag.glsl",
      Feature::AlphaMask | Feature::FullMaterial, "depth of the objects in the view of the depth camera"},
     {ShaderId::Surface, "unlit_surface", "unlit/unlit_vert.glsl", "unlit/unlit_frag.glsl",
      Feature::BaseColorTexture | Feature::FullMaterial | Feature::DepthCamera,

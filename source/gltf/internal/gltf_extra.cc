@@ -10,6 +10,9 @@ namespace gnomon::gltf {
 
 std::string Range::text() const
 {
+  if (least > 0.0) {
+    return "at least " + gltf::text(least) + " or at most -" + gltf::text(least);
+  }
   return "from " + gltf::text(min) + " to " + gltf::text(max);
 }
 

@@ -20,10 +20,12 @@ namespace gnomon::gltf {
 struct Range {
   double min;
   double max;
+  /** \see scene::Description::least */
+  double least = 0.0;
 
   [[nodiscard]] bool contains(double value) const
   {
-    return scene::Description{.name = "", .min = min, .max = max}.allows(value);
+    return scene::Description{.name = "", .min = min, .max = max, .least = least}.allows(value);
   }
   [[nodiscard]] std::string text() const;
 };
@@ -46,7 +48,7 @@ constexpr Range length_range{length_min, large};
 /** The limits of a property in a file. \a factor: unit of the file over that of the scene */
 [[nodiscard]] inline Range range_of(const scene::Description &row, double factor = 1.0)
 {
-  return {std::max(row.min, -large) * factor, std::min(row.max, large) * factor};
+  return {std::max(row.min, -large) * factor, std::min(row.max, large) * factor, row.least * factor};
 }
 
 /** The text of an extra for messages. */

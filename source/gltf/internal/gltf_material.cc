@@ -300,12 +300,8 @@ class MaterialReader {
 
 }  // namespace
 
-MaterialImporter::MaterialImporter(const File &file, std::uint32_t texture_size_max, Warnings &warnings, Scene &scene)
-    : file_(file),
-      warnings_(warnings),
-      scene_(scene),
-      textures_(file, texture_size_max, warnings, scene),
-      stand_ins_(scene)
+MaterialImporter::MaterialImporter(const File &file, const ImportOptions &options, Warnings &warnings, Scene &scene)
+    : file_(file), warnings_(warnings), scene_(scene), textures_(file, options, warnings, scene), stand_ins_(scene)
 {
 }
 

@@ -18,8 +18,8 @@ namespace gnomon::gltf {
 /** Adds materials to a scene at their first use. Unused materials are neither kept nor reported. */
 class MaterialImporter {
  public:
-  /** All references must outlive the importer. \a texture_size_max: \see ImportOptions */
-  MaterialImporter(const File &file, std::uint32_t texture_size_max, Warnings &warnings, scene::Scene &scene);
+  /** All references must outlive the importer. */
+  MaterialImporter(const File &file, const ImportOptions &options, Warnings &warnings, scene::Scene &scene);
 
   /** The scene's material for a material of the file; -1 is glTF's default material. */
   [[nodiscard]] scene::Handle<scene::Material> handle_of(int gltf_material);

@@ -20,12 +20,6 @@ using scene::Scene;
 
 namespace {
 
-/**
- * Limit of the vertices and indices that are read for all primitives together. Primitives may share bytes, so the size
- * of the file does not limit the work.
- */
-constexpr std::uint64_t element_count_max = std::uint64_t(1) << 28U;
-
 /** Name of the scene's mesh for a primitive. */
 std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t primitive_index)
 {
@@ -47,13 +41,14 @@ const scene::TextureSlot *tangent_slot(const scene::Material &material)
 
 }  // namespace
 
-MeshImporter::MeshImporter(const File &file, std::uint32_t texture_size_max, Progress &progress, Warnings &warnings,
+MeshImporter::MeshImporter(const File &file, const ImportOptions &options, Progress &progress, Warnings &warnings,
                            Scene &scene)
     : file_(file),
       progress_(progress),
       warnings_(warnings),
       scene_(scene),
-      materials_(file, texture_size_max, warnings, scene)
+      element_count_max_(options.element_count_max),
+      materials_(file, options, warnings, scene)
 {
 }
 
@@ -73,8 +68,9 @@ void MeshImporter::spend(std::uint64_t element_count)
 {
   // No overflow, because the count of an accessor is bounded by the size of a file.
   element_count_ += element_count;
-  if (element_count_ > element_count_max) {
-    throw std::length_error("scene: has more than " + std::to_string(element_count_max) + " vertices and indices");
+  if (element_count_ > element_count_max_) {
+    throw std::length_error("scene: has more than " + std::to_string(element_count_max_) +
+                            " vertices and indices, the limit of --vertices-max");
   }
 }
 

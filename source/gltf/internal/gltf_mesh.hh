@@ -20,8 +20,8 @@ namespace gnomon::gltf {
 /** Adds meshes to a scene, one for each glTF primitive, at its first use. */
 class MeshImporter {
  public:
-  /** All references must outlive the importer. \a texture_size_max: \see ImportOptions */
-  MeshImporter(const File &file, std::uint32_t texture_size_max, Progress &progress, Warnings &warnings,
+  /** All references must outlive the importer. */
+  MeshImporter(const File &file, const ImportOptions &options, Progress &progress, Warnings &warnings,
                scene::Scene &scene);
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
@@ -61,6 +61,7 @@ class MeshImporter {
   Progress &progress_;
   Warnings &warnings_;
   scene::Scene &scene_;
+  std::uint64_t element_count_max_;
   MaterialImporter materials_;
   std::map<int, std::vector<scene::Handle<scene::Mesh>>> meshes_of_;
   /** Primitives with the same key become one mesh: name, attributes, indices, material and mode. */

@@ -25,11 +25,7 @@ using scene::TextureWrap;
 
 namespace {
 
-/**
- * Limits of the texels of all images, after and before they are reduced: 2 GiB, and the time for 16 of the largest
- * images. Millions of texels may be compressed to a few kilobytes, so the size of the file does not limit them.
- */
-constexpr std::uint64_t scene_texel_count_max = std::uint64_t(1) << 29U;
+/** Limit of the texels of all images before they are reduced: the time for 16 of the largest images. */
 constexpr std::uint64_t decoded_texel_count_max = std::uint64_t(1) << 32U;
 
 /** Reads one sampler. Unknown values are replaced by those of a texture without a sampler. */
@@ -93,21 +89,25 @@ class SamplerReader {
 
 }  // namespace
 
-TextureImporter::TextureImporter(const File &file, std::uint32_t size_max, Warnings &warnings, Scene &scene)
-    : file_(file), size_max_(size_max), warnings_(warnings), scene_(scene)
+TextureImporter::TextureImporter(const File &file, const ImportOptions &options, Warnings &warnings, Scene &scene)
+    : file_(file),
+      size_max_(options.texture_size_max),
+      texel_count_max_(options.image_bytes_max / 4),
+      warnings_(warnings),
+      scene_(scene)
 {
 }
 
 void TextureImporter::spend(const ImageDecoder &decoder)
 {
-  const auto check = [&](std::uint64_t count, std::uint64_t spent, std::uint64_t max) {
+  const auto check = [&](std::uint64_t count, std::uint64_t spent, std::uint64_t max, const char *limit) {
     if (count > max - spent) {
       throw Fault(decoder.what(), "is too large, " + decoder.size_text() + " texels: " + std::to_string(max - spent) +
-                                      " are left of those that all images may have");
+                                      " are left of those that all images may have" + limit);
     }
   };
-  check(decoder.kept_texel_count(), texel_count_, scene_texel_count_max);
-  check(decoder.texel_count(), decoded_texel_count_, decoded_texel_count_max);
+  check(decoder.kept_texel_count(), texel_count_, texel_count_max_, ", by --image-memory");
+  check(decoder.texel_count(), decoded_texel_count_, decoded_texel_count_max, " before they are reduced");
   texel_count_ += decoder.kept_texel_count();
   decoded_texel_count_ += decoder.texel_count();
 }

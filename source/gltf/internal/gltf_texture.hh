@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf_import.hh"
 #include "internal/gltf_file.hh"
 #include "internal/gltf_image.hh"
 #include "internal/gltf_progress.hh"
@@ -23,8 +24,8 @@ namespace gnomon::gltf {
  */
 class TextureImporter {
  public:
-  /** All references must outlive the importer. \a size_max: \see ImportOptions::texture_size_max */
-  TextureImporter(const File &file, std::uint32_t size_max, Warnings &warnings, scene::Scene &scene);
+  /** All references but \a options must outlive the importer. */
+  TextureImporter(const File &file, const ImportOptions &options, Warnings &warnings, scene::Scene &scene);
 
   /**
    * The scene's texture for a texture of the file, whose index may be out of range. Its image has one texel until
@@ -67,7 +68,9 @@ class TextureImporter {
   };
 
   const File &file_;
+  /** \see ImportOptions */
   std::uint32_t size_max_;
+  std::uint64_t texel_count_max_;
   Warnings &warnings_;
   scene::Scene &scene_;
   std::map<int, scene::Handle<scene::Texture>> handle_of_;

@@ -60,6 +60,8 @@ class GlDevice final : public Device {
   struct GlBuffer {
     GLuint name = 0;
     std::size_t size_bytes = 0;
+    /** Whether a list has updated it since the last wait_for_copies(). */
+    bool is_copied_into = false;
   };
   /** A sampler that a program declares. */
   struct DeclaredSampler {
@@ -146,6 +148,8 @@ class GlDevice final : public Device {
   /** Attaches a texture to \a framebuffer at \a point. If this needs a texture view, appends it to \a views. */
   void attach(GLuint framebuffer, GLenum point, const AttachmentLayout &attachment, std::vector<GLuint> &views);
   void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
+  /** Call this between a copy into a buffer and glBufferSubData into the same range. */
+  void wait_for_copies();
   /** Compiles and links \a stages. \throws Error with the driver's log */
   GLuint compile(const ShaderDesc &desc, const std::vector<ShaderSource> &stages);
   /** Creates a program from its compiled form. \return 0 if the driver does not accept \a compiled */

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace gnomon::gpu {
 
@@ -226,7 +227,7 @@ void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
       desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER, desc.size_bytes);
   label(GL_BUFFER, buffer, desc.name);
   check_or(fmt::format("buffer '{}'", desc.name), [&] { glDeleteBuffers(1, &buffer); });
-  buffers_.insert(id, {buffer, desc.size_bytes});
+  buffers_.insert(id, {buffer, desc.size_bytes, false});
 }
 
 void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
@@ -242,10 +243,12 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
   check_or(fmt::format("batch '{}': {} bytes of vertices and {} of indices in all", desc.name,
                        std::reduce(sizes.begin(), sizes.begin() + vertex_stream_count), sizes[index_pool]),
            [&] { glDeleteBuffers(GLsizei(grown.size()), grown.data()); });
+  bool is_copied = false;
   for (std::size_t i = 0; i < pool_count; i++) {
     if (grown[i] != 0) {
       if (pool_[i] != 0) {
         glCopyNamedBufferSubData(pool_[i], grown[i], 0, 0, GLsizeiptr(pool_size_[i]));
+        is_copied = true;
       }
       std::swap(pool_[i], grown[i]);
       pool_size_[i] = sizes[i];
@@ -260,6 +263,16 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
   }
   glVertexArrayElementBuffer(shared_array_.name, pool_[index_pool]);
   glDeleteBuffers(GLsizei(grown.size()), grown.data());
+  if (is_copied) {
+    wait_for_copies();
+  }
+}
+
+void GlDevice::wait_for_copies()
+{
+  // NVIDIA's driver (580.159) executes a large glBufferSubData before earlier copies into the same range. Neither
+  // glFlush nor a memory barrier puts them in order.
+  glFinish();
 }
 
 void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
@@ -427,7 +440,11 @@ bool GlDevice::driver_trim()
 void GlDevice::buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes)
 {
   const Calls calls(*this);
-  glNamedBufferSubData(buffers_.at(id).name, GLintptr(offset_bytes), GLsizeiptr(bytes.size()), bytes.data());
+  GlBuffer &buffer = buffers_.at(id);
+  if (std::exchange(buffer.is_copied_into, false)) {
+    wait_for_copies();
+  }
+  glNamedBufferSubData(buffer.name, GLintptr(offset_bytes), GLsizeiptr(bytes.size()), bytes.data());
 }
 
 void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byte> texels)

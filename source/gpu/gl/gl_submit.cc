@@ -104,10 +104,13 @@ void GlDevice::execute(const CommandList &list)
         glBindVertexArray(empty_vertex_array_);
         glDrawArraysInstanced(GL_TRIANGLES, 0, GLsizei(command.first), GLsizei(command.count));
         break;
-      case CommandKind::Update:
-        glCopyNamedBufferSubData(stream_.buffer(), buffers_.at(command.id).name, GLintptr(written(command)),
-                                 GLintptr(command.slot), GLsizeiptr(command.count));
+      case CommandKind::Update: {
+        GlBuffer &buffer = buffers_.at(command.id);
+        buffer.is_copied_into = true;
+        glCopyNamedBufferSubData(stream_.buffer(), buffer.name, GLintptr(written(command)), GLintptr(command.slot),
+                                 GLsizeiptr(command.count));
         break;
+      }
     }
   }
 }

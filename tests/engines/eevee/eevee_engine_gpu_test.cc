@@ -445,17 +445,6 @@ TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
   EXPECT_EQ(passes, null.inspect().serialize_passes());
 }
 
-TEST_F(EngineGpuTest, EveryVariantIsAcceptedByTheDriver)
-{
-  for (const ShaderDeclaration &declaration : shader_declarations()) {
-    for (const Feature features : shader_variants(declaration)) {
-      // Each program is freed before the next: all of them together take 15 GB in Mesa.
-      ShaderCache cache;
-      EXPECT_NO_THROW(cache.get(*device, declaration.id, features)) << declaration.name << std::uint32_t(features);
-    }
-  }
-}
-
 TEST_F(EngineGpuTest, AnEditedShaderIsReloadedAndABadEditKeepsTheLastGoodOne)
 {
   test::edit_material(scene, 0, [&](scene::Material &material) { material.emissive = {1, 1, 1}; });

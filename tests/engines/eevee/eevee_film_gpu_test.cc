@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The film as the driver draws it, compared with the sum that its weights define.
-#include "eevee_film.hh"
+#include "eevee_pixel_filter.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 

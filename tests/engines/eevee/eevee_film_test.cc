@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_film.hh"
+#include "eevee_pixel_filter.hh"
 
 #include <gtest/gtest.h>
 

@@ -126,6 +126,28 @@ TEST(Lamps, LampsShadedAsPointsHaveNoExtent)
   }
 }
 
+TEST(Lamps, WholeHighlightsNeedLobesThatAreNarrowAtTheNearestSurface)
+{
+  std::vector<scene::PlacedLamp> placed{unit_lamp(scene::LampKind::Point)};
+  placed[0].radius = 0.5F;
+  placed[0].world_from_lamp[3] = {1.0, 2.0, 3.0, 1.0};
+  const auto highlight_alpha = [&](int sample_count, const scene::Bounds &receivers_ws) {
+    Lamps lamps = make_lamps(placed, LampShading::Point);
+    set_highlights(lamps, placed, placed.size(), sample_count, receivers_ws);
+    return lamps.highlight_alpha;
+  };
+  // Of `sample_count` points in the lamp's solid angle, a lobe of 4 π alpha² contains HIGHLIGHT_LOBE_POINTS.
+  const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(std::atan(0.5 / 1.5)));
+  const double expected = std::sqrt(double(HIGHLIGHT_LOBE_POINTS) / 256.0 * solid_angle / (4.0 * std::numbers::pi));
+  const scene::Bounds below{{-5.0F, -5.0F, -5.0F}, {5.0F, 0.5F, 5.0F}};
+  EXPECT_NEAR(double(highlight_alpha(256, below)), expected, 1e-6);
+  EXPECT_NEAR(double(highlight_alpha(1024, below)), 0.5 * expected, 1e-6);
+  // A surface at the lamp sees it in half of all directions.
+  EXPECT_NEAR(double(highlight_alpha(256, {{-5.0F, -5.0F, -5.0F}, {5.0F, 5.0F, 5.0F}})), std::sqrt(0.125), 1e-6);
+  placed[0].radius = 0.0F;
+  EXPECT_EQ(highlight_alpha(256, below), 0.0F);
+}
+
 TEST(Lamps, SizedLampsAreDrawnWithoutAWarning)
 {
   std::vector<scene::PlacedLamp> placed;

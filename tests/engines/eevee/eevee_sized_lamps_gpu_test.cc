@@ -200,6 +200,123 @@ TEST_F(LampLightTest, SpecularOfOneFrameIsTheMeasuredApproximation)
   }
 }
 
+/** A lamp with an extent and a radiance of 1, and its shape relative to the origin. */
+struct HighlightCase {
+  std::string name;
+  scene::Lamp lamp{};
+  glm::dmat4 world_from_lamp{1.0};
+  measure::LampShape shape{};
+};
+
+/** Lamps at \a center, which spread over about a third of their distance. Area lamps face the origin. */
+std::vector<HighlightCase> highlight_cases(const glm::dvec3 &center)
+{
+  const double distance = glm::length(center);
+  const glm::dmat4 world_from_lamp = turned_to(center, {});
+  const glm::dvec3 axis_x(world_from_lamp[0]);
+  const glm::dvec3 axis_y(world_from_lamp[1]);
+  std::vector<HighlightCase> cases;
+  const auto add = [&](const char *name, scene::LampKind kind, measure::LampOutline outline, const glm::dvec3 &at,
+                       double half_x, double half_y) -> scene::Lamp & {
+    HighlightCase &added =
+        cases.emplace_back(HighlightCase{name, {}, world_from_lamp, {outline, at, half_x * axis_x, half_y * axis_y}});
+    added.lamp.kind = kind;
+    return added.lamp;
+  };
+  for (const bool is_ellipse : {false, true}) {
+    scene::Lamp &area =
+        add(is_ellipse ? "ellipse" : "rectangle", scene::LampKind::Area,
+            is_ellipse ? measure::LampOutline::Ellipse : measure::LampOutline::Rectangle, center, 0.5, 0.25);
+    area.area_shape = is_ellipse ? scene::AreaShape::Ellipse : scene::AreaShape::Rectangle;
+    area.area_size_x = 1.0F;
+    area.area_size_y = 0.5F;
+    area.intensity = float(is_ellipse ? 0.5 * pi : 2.0);
+  }
+  for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
+    scene::Lamp &round =
+        add(kind == scene::LampKind::Spot ? "spot" : "point", kind, measure::LampOutline::Round, center, 0.3, 0.3);
+    round.radius = 0.3F;
+    round.intensity = float(pi * 0.09);
+    round.spot_outer_angle = 1.0F;
+  }
+  const double half_angle = 0.2;
+  scene::Lamp &sun = add("sun", scene::LampKind::Sun, measure::LampOutline::Round, center / distance,
+                         std::tan(half_angle), std::tan(half_angle));
+  sun.angle = float(2.0 * half_angle);
+  sun.intensity = float(pi * std::pow(std::sin(half_angle), 2.0));
+  return cases;
+}
+
+class HighlightTest : public LampLightTest {
+ protected:
+  /** Radiance of the ground at the origin, a metal of \a roughness, towards \a view. */
+  double highlight(const HighlightCase &one, float roughness, const glm::dvec3 &view, int sample_count,
+                   scene::ShadowKind shadow = scene::ShadowKind::None)
+  {
+    scene.edit(material, [&](scene::Material &value) {
+      value.metallic = 1.0F;
+      value.roughness = roughness;
+    });
+    test::remove_lamps(scene);
+    test::add_lamp(scene, one.lamp, one.world_from_lamp);
+    scene::PlacedCamera camera = camera_above(1.0, 1e-4);
+    camera.world_from_camera = glm::inverse(glm::lookAt(view, glm::dvec3(0.0), glm::dvec3(0, 1, 0)));
+    test::Renderer renderer(*device, scene, {5, 5}, {.shadow = {.kind = shadow}, .sample_count = sample_count});
+    const test::Picture picture = renderer.picture(camera);
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return double(picture.middle().r);
+  }
+
+  static constexpr double view_angle = 0.8;
+  const glm::dvec3 view{std::sin(view_angle), 0.0, std::cos(view_angle)};
+};
+
+TEST_F(HighlightTest, OfNarrowLobesIsTheClosedFormWithAnyNumberOfSamples)
+{
+  // The mirrored view is inside of the lamps, and outside of them.
+  for (const glm::dvec3 &center : {glm::dvec3(-1.1, 0.1, 1.15), glm::dvec3(-1.0, 0.5, 1.2)}) {
+    for (const HighlightCase &one : highlight_cases(center)) {
+      const double expected =
+          measure::whole_specular(one.shape, {.alpha = double(0.2F) * double(0.2F), .view = view}).light;
+      EXPECT_GT(expected, 0.001);
+      for (const int sample_count : {1, 2, 5, 16}) {
+        EXPECT_NEAR(highlight(one, 0.2F, view, sample_count) / expected, 1.0, 2e-3)
+            << one.name << ", " << sample_count << " samples, " << center.y;
+      }
+    }
+  }
+}
+
+TEST_F(HighlightTest, OfALampThatCrossesTheHorizonIsTheClosedForm)
+{
+  for (const HighlightCase &one : highlight_cases({-1.6, 0.0, 0.1})) {
+    const glm::dvec3 low(std::sin(1.45), 0.0, std::cos(1.45));
+    const double alpha = double(0.2F) * double(0.2F);
+    const double expected = measure::whole_specular(one.shape, {.alpha = alpha, .view = low}).light;
+    EXPECT_GT(expected, 0.01);
+    // The part of the points that are above the horizon is a fraction of 64.
+    EXPECT_NEAR(highlight(one, 0.2F, low, 64) / expected, 1.0, 0.05) << one.name;
+  }
+}
+
+TEST_F(HighlightTest, OfAHalfHiddenLampConverges)
+{
+  const glm::dvec3 center(-1.1, 0.1, 1.15);
+  const HighlightCase one = highlight_cases(center).front();
+  // A wall directly in front of the half of the lamp on the side of its -y.
+  test::add_object(scene, test::add_square_mesh(scene, material),
+                   glm::translate(one.world_from_lamp, glm::dvec3(0.0, -1.0, -0.01)));
+  measure::LampShape seen = one.shape;
+  seen.center += 0.5 * one.shape.axis_y;
+  seen.axis_y *= 0.5;
+  for (const float roughness : {0.3F, 0.45F}) {
+    const double alpha = double(roughness) * double(roughness);
+    const double expected = measure::integrated_specular(seen, {.alpha = alpha, .view = view}, 4096).value;
+    EXPECT_GT(expected, 0.01);
+    EXPECT_NEAR(highlight(one, roughness, view, 512, scene::ShadowKind::Hard) / expected, 1.0, 0.03) << roughness;
+  }
+}
+
 struct PenumbraLamp {
   const char *name;
   scene::LampKind kind;

@@ -163,6 +163,12 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
   else {
     block_buffer_ = {};
   }
+  // Arrays without layers do not exist. Their slots get another array, which shaders do not read there.
+  const auto some = std::ranges::find_if(arrays_, [](const LayerArray &array) { return bool(array.texture()); });
+  for (std::size_t i = 0; i < arrays_.size() && some != arrays_.end(); i++) {
+    const gpu::Texture &texture = arrays_[i].texture() ? arrays_[i].texture() : some->texture();
+    bindings_[i] = {texture.id(), sampler_.id()};
+  }
   record_passes(device, shaders);
   return is_any_new;
 }
@@ -267,17 +273,10 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
 void OctahedralStore::bind(draw::ShadingGroup &group) const
 {
   GNOMON_ASSERT(!slots_.empty(), "no lamp has an octahedral layer");
-  // Arrays without layers do not exist. Their slots get another array, which shaders do not read there.
-  const gpu::Texture &some =
-      std::ranges::find_if(arrays_, [](const LayerArray &array) { return bool(array.texture()); })->texture();
-  const auto texture_of = [&](int format) -> const gpu::Texture & {
-    const gpu::Texture &texture = arrays_[std::size_t(format)].texture();
-    return texture ? texture : some;
-  };
   group.bind_uniform("esm_block", block_buffer_);
-  group.bind_texture("shadow_esm", texture_of(ESM_FLOAT), sampler_);
-  group.bind_texture("shadow_esm_half", texture_of(ESM_HALF), sampler_);
-  group.bind_texture("shadow_evsm", texture_of(ESM_VARIANCE), sampler_);
+  group.bind_texture_ref("shadow_esm", &bindings_[ESM_FLOAT]);
+  group.bind_texture_ref("shadow_esm_half", &bindings_[ESM_HALF]);
+  group.bind_texture_ref("shadow_evsm", &bindings_[ESM_VARIANCE]);
 }
 
 std::vector<const gpu::Texture *> OctahedralStore::textures() const

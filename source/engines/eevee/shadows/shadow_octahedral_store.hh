@@ -153,7 +153,10 @@ class OctahedralStore {
   /** Append the passes that draw the layer of the \a index-th lamp to \a list. \pre \a index is below size() */
   void record(gpu::CommandList &list, std::size_t index, const EsmCube &cube);
 
-  /** Bind `esm_block`, `shadow_esm`, `shadow_esm_half` and `shadow_evsm` by value. \pre size() is above 0 */
+  /**
+   * Bind `esm_block` by value, and `shadow_esm`, `shadow_esm_half` and `shadow_evsm` by reference: the store must
+   * outlive \a group. \pre size() is above 0
+   */
   void bind(draw::ShadingGroup &group) const;
 
   /** Whether at least one lamp has EsmMethod::Evsm. Lookups then need USE_SHADOW_EVSM. */
@@ -242,6 +245,8 @@ class OctahedralStore {
   /** The first texture holds distances, the second holds the distances after the filter along rows. */
   std::array<Scratch, 2> scratch_;
   gpu::Sampler sampler_;
+  /** Of `arrays_`. Groups read them by reference. */
+  std::array<draw::TextureBinding, 3> bindings_;
   draw::Pass disk4_{"esm_disk4", gpu::State::WriteColor};
   draw::Pass disk32_{"esm_disk32", gpu::State::WriteColor};
   draw::Pass distance_{"esm_distance", gpu::State::WriteColor};

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Functions that several steps of a frame and Inspection share: the view of a sample, reasons.
+#include "eevee_renderbuffers.hh"
+#include "eevee_resource_report.hh"
+
 #include "eevee_camera.hh"
-#include "eevee_engine_data.hh"
-#include "eevee_film.hh"
 #include "eevee_frame.hh"
+#include "eevee_pixel_filter.hh"
+#include "eevee_sequence_shared.h"
 
 #include <glm/matrix.hpp>
 
@@ -12,28 +14,30 @@
 
 namespace gnomon::eevee {
 
-bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
+void RenderBuffers::make(draw::Viewport &viewport)
 {
-  switch (step) {
-    case FrameStep::Part::First: return part.is_first;
-    case FrameStep::Part::Rows: return part.row_count > 0;
-    case FrameStep::Part::Last: return part.is_last;
-    case FrameStep::Part::Each: break;
+  if (radiance) {
+    return;
   }
-  return true;
+  gpu::Device &device = viewport.device();
+  const gpu::Texture &depth = viewport.depth_texture();
+  radiance = create_target(device, "radiance", gpu::Format::RGBA32F, viewport.drawn_size_px());
+  depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&depth}});
+  main_fb = device.create_framebuffer({.name = "main_fb", .colors = {{&radiance}}, .depth = {&depth}});
+  view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
+  nearest = device.create_sampler({.name = "nearest"});
 }
 
-std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
+void RenderBuffers::resized()
 {
-  if (state.settings.shadow.kind == scene::ShadowKind::None) {
-    return "shadows are off";
-  }
-  return has(state.data.stl.features, Feature::Light) ? no_such_lamp : "no lamp gives light";
+  depth_fb = {};
+  main_fb = {};
+  radiance = {};
 }
 
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 {
-  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
+  return 2.0F / (std::abs(view.clip_from_view()[1][1]) * float(viewport.drawn_size_px().y));
 }
 
 draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
@@ -65,7 +69,7 @@ static void set_places(shared::ViewData &data, const draw::View &view, const glm
   const glm::dvec2 offset = view.is_perspective() ? glm::dvec2(projection[2]) : -glm::dvec2(projection[3]);
   const glm::dvec3 right = glm::dvec3(world_from_view[0]) * scale.x;
   const glm::dvec3 up = glm::dvec3(world_from_view[1]) * scale.y;
-  data.place_middle = glm::vec4(glm::vec3(right * offset.x + up * offset.y), 0.0F);
+  data.place_middle = glm::vec3(right * offset.x + up * offset.y);
   data.place_right = glm::vec4(glm::vec3(right), 0.0F);
   data.place_up = glm::vec4(glm::vec3(up), 0.0F);
 }
@@ -83,8 +87,18 @@ shared::ViewData view_data(const draw::View &view, const Settings &settings, int
   // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
   // apart.
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
+  data.mask_shift = shared::to_unit(shared::scrambled_van_der_corput(std::uint32_t(sample_index), settings.seed));
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
+}
+
+void RenderBuffers::report(draw::Viewport &viewport, ResourceReport &report) const
+{
+  static const gpu::Texture none;
+  report.add_target(viewport.has_depth_texture() ? viewport.depth_texture() : none, "depth", "each pixel is lit once",
+                    nothing_seen);
+  report.add_target(radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
+  report.add_block(view_block, "view_block", "whatever is drawn", nothing_seen);
 }
 
 }  // namespace gnomon::eevee

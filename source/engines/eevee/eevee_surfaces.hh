@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_blend.hh"
+#include "eevee_depth.hh"
+#include "eevee_probe.hh"
+#include "eevee_transmission.hh"
+
+#include "render_surfaces.hh"
+
+#include <map>
+#include <tuple>
+
+namespace gnomon::eevee {
+
+/** The calls of one group share the pass, the shader, the additional state and the material's textures. */
+using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, render_scene::TextureSet>;
+
+/** What SurfacePasses::record records. */
+struct SurfaceRecording {
+  render_scene::RenderScene &scene;
+  ShaderCache &shaders;
+  const Settings &settings;
+  /** Of the frame. */
+  Feature features = Feature::None;
+  /** Entry of `light_block` of the sun of Settings::has_cascade_tint. Empty: no cascade is tinted. */
+  std::optional<int> tinted_entry;
+  const BindLit &bind;
+};
+
+/** Features of programs that settings ask for. */
+[[nodiscard]] inline Feature asked_features(const Settings &settings)
+{
+  return settings.has_multiscatter ? Feature::Multiscatter : Feature::None;
+}
+
+/**
+ * The drawable objects of a viewport: sorts them into the passes of modules, and owns the passes that shade forward
+ * objects. Internal to the engine.
+ */
+class SurfacePasses {
+ public:
+  SurfacePasses(draw::ObjectBuffer &objects, const RenderBuffers &buffers, DepthPasses &depth,
+                Transmission &transmission, BlendPass &blend, SurfaceProbe &probe);
+
+  /** \see draw::Engine::cache_init, cache_populate and cache_finish */
+  void begin_sync(std::size_t object_count);
+  void sync(draw::ObjectIndex object, bool is_mirrored);
+  void end_sync();
+  /** Record the calls of all objects anew. */
+  void record(const SurfaceRecording &recording);
+
+  /** In the order of their first sync. Recorded when at least one of them is visible. */
+  [[nodiscard]] const std::vector<draw::ObjectIndex> &objects() const
+  {
+    return objects_;
+  }
+  /** The matrix of an object became mirrored or ceased to be mirrored since the passes were recorded. */
+  [[nodiscard]] bool is_winding_changed() const
+  {
+    return is_winding_changed_;
+  }
+  [[nodiscard]] bool has_tint() const
+  {
+    return !tint_pass_.is_empty();
+  }
+
+  /** Shades each pixel of forward objects once, by an equal-depth test. */
+  [[nodiscard]] FrameStep step();
+
+ private:
+  /** Key of the recording of an object, beside its index. All objects of a mesh are of one kind, or of few. */
+  struct Kind {
+    gpu::BatchRange batch{};
+    /** The groups that have calls of the objects: no more than one in each of five passes. */
+    std::array<draw::ShadingGroup *, 5> groups{};
+    std::size_t group_count = 0;
+    /** The program of BlendPass, where each object has groups of its own; nullptr: they are not in it. */
+    const gpu::Shader *blend_shader = nullptr;
+  };
+  /** Make the groups for the objects of the kind of \a first. */
+  Kind record_kind(const SurfaceRecording &recording, draw::ObjectIndex first);
+  [[nodiscard]] Need need(const FrameState &state) const;
+
+  const RenderBuffers &buffers_;
+  DepthPasses &depth_;
+  Transmission &transmission_;
+  BlendPass &blend_;
+  SurfaceProbe &probe_;
+  draw::Pass pass_;
+  draw::Pass tint_pass_;
+  std::vector<draw::ObjectIndex> objects_;
+  /** True between begin_sync and end_sync. */
+  bool is_collecting_ = false;
+  /** By object index: whether the passes were recorded with a mirrored matrix. */
+  std::vector<bool> is_mirrored_;
+  bool is_winding_changed_ = false;
+  std::map<GroupKey, draw::ShadingGroup *> groups_;
+};
+
+}  // namespace gnomon::eevee
