@@ -32,7 +32,7 @@ void for_each_setting(Visit &&visit)
 /** A number as an option takes it. */
 std::string number_text(double number)
 {
-  return fmt::format("{:.12g}", number);
+  return fmt::format("{:.13g}", number);
 }
 
 TEST_F(CliSettings, EachOptionIsInTheHelpAndTakesWhatItsRowAllows)

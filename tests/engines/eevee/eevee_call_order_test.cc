@@ -156,7 +156,7 @@ TEST_F(CallOrderTest, AfterAnInternalErrorTheSceneCanBeSavedAndANewRendererDraws
     viewport.sync(engines, shared.objects());
     for (int i = 0; i < 2; i++) {
       test::expect_internal_error([&] { viewport.draw(engines, view_of(camera, size_px)); },
-                                  "draw_view.cc:[0-9]+: half_width > 0.*half size 0x1");
+                                  "draw_view.cc:[0-9]+: half_width != 0.*half size 0x1");
     }
     // The viewport itself goes on without the engine.
     const std::array<draw::Engine *, 1> sound = {&engine};
