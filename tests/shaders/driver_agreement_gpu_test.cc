@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The layout of a shader's blocks agrees between glslang, the driver and C++.
+#include "engines/eevee/eevee_pairwise_variants.hh"
+
 #include "eevee_blocks.hh"
 #include "eevee_shaders.hh"
 #include "gpu_device_fixture.hh"
@@ -259,57 +261,10 @@ class DriverAgreement : public test::GpuDeviceTest {
   }
 };
 
-/** Each two features that are on or off, and the numbers of both. */
-using FeaturePair = std::array<std::uint32_t, 2>;
-
-std::set<FeaturePair> feature_pairs(const ShaderDeclaration &declaration, Feature features)
-{
-  std::set<FeaturePair> pairs;
-  const auto all = std::uint32_t(declaration.features);
-  const auto value_of = [&](int bit) { return 2U * std::uint32_t(bit) + (std::uint32_t(features) >> bit & 1U); };
-  for (int i = 0; i < 32; i++) {
-    for (int j = i; j < 32; j++) {
-      if ((all >> i & all >> j & 1U) != 0) {
-        pairs.insert({value_of(i), value_of(j)});
-      }
-    }
-  }
-  return pairs;
-}
-
-/** A few variants in which each two features have every combination that they have in all variants. */
-std::vector<Feature> pairwise_variants(const ShaderDeclaration &declaration)
-{
-  const std::vector<Feature> all = shader_variants(declaration);
-  std::set<FeaturePair> missing;
-  for (const Feature features : all) {
-    missing.merge(feature_pairs(declaration, features));
-  }
-  std::vector<Feature> chosen;
-  do {
-    std::size_t most = 0;
-    Feature best = all.front();
-    for (const Feature features : all) {
-      const std::set<FeaturePair> pairs = feature_pairs(declaration, features);
-      const auto added =
-          std::size_t(std::ranges::count_if(pairs, [&](const FeaturePair &pair) { return missing.contains(pair); }));
-      if (added > most) {
-        most = added;
-        best = features;
-      }
-    }
-    chosen.push_back(best);
-    for (const FeaturePair &pair : feature_pairs(declaration, best)) {
-      missing.erase(pair);
-    }
-  } while (!missing.empty());
-  return chosen;
-}
-
 // The compilers take nearly all of the time of these tests.
 TEST_F(DriverAgreement, BothCompilersAcceptEachPairOfFeaturesWithoutWarningsAndHaveTheSameInterface)
 {
-  check(pairwise_variants);
+  check(test::pairwise_variants);
 }
 
 using SlowDriverAgreement = DriverAgreement;

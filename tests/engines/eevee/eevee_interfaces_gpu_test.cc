@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Reflects each variant of each program, which takes half a minute. No test here needs a driver; they stand with those
-// that do, because these run without sanitizers, under which it would take minutes.
+// No test here needs a driver; they stand with those that do, because these run without sanitizers, under which glslang
+// is several times as slow.
+#include "engines/eevee/eevee_pairwise_variants.hh"
+
 #include "eevee_interfaces.hh"
 #include "eevee_shaders.hh"
 #include "shader_check_reflection.hh"
@@ -11,20 +13,11 @@
 namespace gnomon::eevee {
 namespace {
 
-constexpr std::size_t slice_count = 16;
-
-/** Every 16th variant from this one on, so that the processes of the tests share the work. */
-class InterfaceTablesSlice : public testing::TestWithParam<std::size_t> {};
-
-// The build tool reflects other kernels than these.
-TEST_P(InterfaceTablesSlice, EqualsAFreshReflectionOfEachVariantWithAnyKernel)
+/** Compares the tables with fresh reflections of \a variants of each program. The build tool reflects other kernels. */
+void expect_fresh(std::vector<Feature> (*variants)(const ShaderDeclaration &declaration))
 {
-  std::size_t index = 0;
   for (const ShaderDeclaration &declaration : shader_declarations()) {
-    for (const Feature features : shader_variants(declaration)) {
-      if (index++ % slice_count != GetParam()) {
-        continue;
-      }
+    for (const Feature features : variants(declaration)) {
       const gpu::ShaderInterface generated =
           interface_tables()[std::size_t(declaration.id)].interface_of(std::uint32_t(features));
       std::vector<PcfKernel> kernels = {{.width = 1}};
@@ -40,7 +33,15 @@ TEST_P(InterfaceTablesSlice, EqualsAFreshReflectionOfEachVariantWithAnyKernel)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Slices, InterfaceTablesSlice, testing::Range(std::size_t(0), slice_count));
+TEST(InterfaceTables, EqualFreshReflectionsOfEachPairOfFeaturesWithAnyKernel)
+{
+  expect_fresh(test::pairwise_variants);
+}
+
+TEST(SlowInterfaceTables, EqualFreshReflectionsOfEachVariantWithAnyKernel)
+{
+  expect_fresh(shader_variants);
+}
 
 }  // namespace
 }  // namespace gnomon::eevee

@@ -18,7 +18,7 @@
 namespace gnomon::eevee {
 namespace {
 
-/** The interface from the generated table. InterfaceTablesSlice tests that it equals a fresh reflection. */
+/** The interface from the generated table. SlowInterfaceTables tests that it equals a fresh reflection. */
 gpu::ShaderInterface interface_of(const ShaderDeclaration &declaration, Feature features)
 {
   return interface_tables()[std::size_t(declaration.id)].interface_of(std::uint32_t(features));
