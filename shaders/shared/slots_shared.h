@@ -26,14 +26,15 @@
 #define LINE_BLOCK_SLOT 4
 
 #define PUSH_CONSTANT_SLOT 8
-#define VIEW_BLOCK_SLOT 9
-#define LIGHT_BLOCK_SLOT 10
-#define SHADOW_BLOCK_SLOT 11
-#define SHADOW_RENDER_BLOCK_SLOT 12
-#define ESM_BLOCK_SLOT 13
-#define LIGHT_SHAPE_BLOCK_SLOT 14
-#define WORLD_BLOCK_SLOT 15
-#define LIGHT_CLUSTER_BLOCK_SLOT 24
+// Blocks whose members bound loops come first: Mesa 22.3.6's lavapipe crashes if such a block is after the third of a stage.
+#define LIGHT_BLOCK_SLOT 9
+#define LIGHT_CLUSTER_BLOCK_SLOT 10
+#define WORLD_BLOCK_SLOT 11
+#define VIEW_BLOCK_SLOT 12
+#define SHADOW_BLOCK_SLOT 13
+#define SHADOW_RENDER_BLOCK_SLOT 14
+#define ESM_BLOCK_SLOT 15
+#define LIGHT_SHAPE_BLOCK_SLOT 24
 #define SURFACE_FUNCTION_BLOCK_SLOT 26
 
 #define SHADOW_CUBES_SLOT 16

@@ -3,7 +3,9 @@
 
 #include "shader_check_reflection.hh"
 #include "shader_files.hh"
+#include "slots_shared.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -162,8 +164,12 @@ TEST_F(EngineTest, PassesPrintWhatWasRecorded)
   const std::string text = renderer.inspect().serialize_passes();
   EXPECT_NE(text.find("shadow_pass [write_depth depth_nearer_equal depth_clamp]\n  group eevee_shadow_layered\n"),
             std::string::npos);
-  EXPECT_NE(text.find("    uniform shadow_render_block -> 12 by reference\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("    uniform light_block -> 10 = light_block\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(fmt::format("    uniform shadow_render_block -> {} by reference\n", SHADOW_RENDER_BLOCK_SLOT)),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(fmt::format("    uniform light_block -> {} = light_block\n", LIGHT_BLOCK_SLOT)),
+            std::string::npos)
+      << text;
 }
 
 /**
