@@ -127,7 +127,6 @@ FrameStep DepthPasses::gbuffer_step()
   return {.name = "gbuffer",
           .part = FrameStep::Part::First,
           .need = [this](const FrameState &state) { return need_gbuffer(state); },
-          .reads = {"view_block"},
           .writes = {"depth", "radiance"},
           .passes = {passes()[2]},
           .record =
@@ -143,7 +142,6 @@ FrameStep DepthPasses::prepass_step()
   return {.name = "depth_prepass",
           .part = FrameStep::Part::First,
           .need = [this](const FrameState &state) { return need_prepass(state); },
-          .reads = {"view_block"},
           .writes = {"depth"},
           .passes = {passes()[0], passes()[1]},
           .record =
@@ -173,7 +171,7 @@ FrameStep DepthPasses::lighting_step()
                 const Need need = need_gbuffer(state);
                 return need.is_needed ? Need{true, "pixels of the G-buffer"} : need;
               },
-          .reads = lit_reads(),
+          .reads = shadow_targets(),
           .writes = {"radiance"},
           .passes = {{&lighting_pass_, "pixels of the G-buffer", why_in_gbuffer}},
           .record =
@@ -189,7 +187,6 @@ FrameStep DepthPasses::forward_step()
   return {.name = "forward_depth",
           .part = FrameStep::Part::Rows,
           .need = [this](const FrameState &state) { return need_forward(state); },
-          .reads = {"view_block"},
           .writes = {"depth"},
           .passes = {passes()[0], passes()[1]},
           .record =
