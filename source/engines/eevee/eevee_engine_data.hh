@@ -96,7 +96,7 @@ struct Data final : draw::EngineViewportData {
   /** The last member that its steps refer to is before it. */
   Frame frame;
 
-  /** Of the frame. */
+  /** Features that the programs of the frame have. */
   Feature features = Feature::None;
   /** SceneLights::revision from which `features` was derived. */
   std::uint64_t lights_revision = 0;

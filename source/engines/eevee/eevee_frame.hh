@@ -25,7 +25,7 @@ struct ResourceReport;
 /** The state from which the needs of steps and passes are decided, beside that of their modules. */
 struct FrameState {
   const Settings &settings;
-  /** Of the frame. */
+  /** Features that the programs of the frame have. */
   Feature features = Feature::None;
   /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;
@@ -58,9 +58,9 @@ struct FrameSample : FrameState {
   const draw::View &view;
   /** The view with the sample's offset within the pixel. */
   const draw::View &sample_view;
-  /** Of the scene. */
+  /** The bounds of the scene, world space. */
   const scene::Bounds &bounds_ws;
-  /** Of the sample in the picture. */
+  /** The number of the sample in the picture, from 0. */
   int index = 0;
   /** The visible objects of the view that was recorded last. */
   draw::VisibleObjects &visible;

@@ -19,7 +19,7 @@ struct ResourceReport;
 inline constexpr int probed_entry = 0;
 inline constexpr int tinted_entry = 1;
 
-/** What a scene's lamps, emissive surfaces and world give light with. It needs no device. */
+/** The lights of a scene: of its lamps, emissive surfaces and world. Needs no device. */
 struct PlannedLights {
   /** The lamps of the scene, followed by the lamps of emission_lamps and of world_lamps. */
   std::vector<scene::PlacedLamp> placed;
@@ -105,7 +105,7 @@ class SceneLights {
   {
     return texture_;
   }
-  /** Of `light_texture` and `light_lists`. */
+  /** The sampler of `light_texture` and `light_lists`. */
   [[nodiscard]] const gpu::Sampler &sampler() const
   {
     return sampler_;

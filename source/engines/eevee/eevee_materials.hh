@@ -11,7 +11,7 @@
 
 namespace gnomon::eevee {
 
-/** What the materials of the drawable objects need. Internal to the engine. */
+/** Features and classes that the materials of the drawable objects need. Internal to the engine. */
 struct DrawnMaterials {
   /** The class with the most inputs, and the features. */
   render_scene::MaterialClass widest_class = render_scene::MaterialClass::Plain;

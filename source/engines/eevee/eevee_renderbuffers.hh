@@ -10,7 +10,7 @@ namespace gnomon::eevee {
 struct ResourceReport;
 struct Settings;
 
-/** What the modules of a viewport draw the scene into, and read, in one sample. Internal to the engine. */
+/** Textures and framebuffers of one sample, which all modules of a viewport share. Internal to the engine. */
 struct RenderBuffers {
   /** Light of the sample, with the guard band. With deferred lighting, it holds the G-buffer before. */
   gpu::Texture radiance;

@@ -15,7 +15,7 @@ namespace gnomon::eevee {
 struct ResourceReport {
   const gpu::Device &device;
   const Settings &settings;
-  /** Of the frame. */
+  /** Features that the programs of the frame have. */
   Feature features = Feature::None;
   /** \see Data::is_recorded */
   bool is_recorded = false;

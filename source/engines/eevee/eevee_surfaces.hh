@@ -16,12 +16,12 @@ namespace gnomon::eevee {
 /** The calls of one group share the pass, the shader, the additional state and the material's textures. */
 using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, render_scene::TextureSet>;
 
-/** What SurfacePasses::record records. */
+/** Inputs of SurfacePasses::record. */
 struct SurfaceRecording {
   render_scene::RenderScene &scene;
   ShaderCache &shaders;
   const Settings &settings;
-  /** Of the frame. */
+  /** Features that the programs of the frame have. */
   Feature features = Feature::None;
   /** Entry of `light_block` of the sun of Settings::has_cascade_tint. Empty: no cascade is tinted. */
   std::optional<int> tinted_entry;

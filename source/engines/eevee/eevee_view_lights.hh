@@ -38,7 +38,7 @@ class ViewLights {
     bool operator==(const Key &) const = default;
   };
   SceneLights &lights_;
-  /** Of the current sample. */
+  /** The points of the lamps in the current sample. */
   SampledLampPoints points_;
   /** Empty, as their block and texture, unless lights are clustered. */
   LightClusters lists_;

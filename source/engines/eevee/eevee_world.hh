@@ -60,7 +60,7 @@ class SceneWorld {
   void make_block(const render_scene::RenderScene &scene);
   void make_levels(const render_scene::RenderScene &scene);
 
-  /** What `block_` and `levels_` were made from. */
+  /** Inputs from which `block_` and `levels_` were made. */
   struct Key {
     /** RenderScene::world_revision. */
     std::uint64_t world = 0;

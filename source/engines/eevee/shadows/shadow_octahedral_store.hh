@@ -245,7 +245,7 @@ class OctahedralStore {
   /** The first texture holds distances, the second holds the distances after the filter along rows. */
   std::array<Scratch, 2> scratch_;
   gpu::Sampler sampler_;
-  /** Of `arrays_`. Groups read them by reference. */
+  /** The bindings of `arrays_`. Groups read them by reference. */
   std::array<draw::TextureBinding, 3> bindings_;
   draw::Pass disk4_{"esm_disk4", gpu::State::WriteColor};
   draw::Pass disk32_{"esm_disk32", gpu::State::WriteColor};
