@@ -127,6 +127,7 @@ FrameStep DepthPasses::gbuffer_step()
   return {.name = "gbuffer",
           .part = FrameStep::Part::First,
           .need = [this](const FrameState &state) { return need_gbuffer(state); },
+          .reads = {"view_block"},
           .writes = {"depth", "radiance"},
           .passes = {passes()[2]},
           .record =
@@ -142,6 +143,7 @@ FrameStep DepthPasses::prepass_step()
   return {.name = "depth_prepass",
           .part = FrameStep::Part::First,
           .need = [this](const FrameState &state) { return need_prepass(state); },
+          .reads = {"view_block"},
           .writes = {"depth"},
           .passes = {passes()[0], passes()[1]},
           .record =
@@ -171,7 +173,7 @@ FrameStep DepthPasses::lighting_step()
                 const Need need = need_gbuffer(state);
                 return need.is_needed ? Need{true, "pixels of the G-buffer"} : need;
               },
-          .reads = shadow_targets(),
+          .reads = lit_reads(),
           .writes = {"radiance"},
           .passes = {{&lighting_pass_, "pixels of the G-buffer", why_in_gbuffer}},
           .record =
@@ -187,6 +189,7 @@ FrameStep DepthPasses::forward_step()
   return {.name = "forward_depth",
           .part = FrameStep::Part::Rows,
           .need = [this](const FrameState &state) { return need_forward(state); },
+          .reads = {"view_block"},
           .writes = {"depth"},
           .passes = {passes()[0], passes()[1]},
           .record =

@@ -41,9 +41,11 @@ static bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
   return true;
 }
 
-std::vector<std::string_view> shadow_targets()
+std::vector<std::string_view> lit_reads()
 {
-  return {"shadow_cubes", "shadow_maps", "shadow_distance_cube", "shadow_esm"};
+  return {"depth",           "view_block",  "light_block",  "light_texture", "light_cluster_block",
+          "light_lists",     "world_block", "shadow_cubes", "shadow_maps",   "shadow_esm",
+          "shadow_esm_half", "shadow_evsm", "behind"};
 }
 
 std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
@@ -124,6 +126,9 @@ void Frame::draw(FrameSample &sample, FrameStep::When when)
     }
     if (has_commands) {
       device.submit(list);
+#ifndef NDEBUG
+      check_.check(step, list, device);
+#endif
     }
     if (step.work) {
       step.work(sample);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_frame_check.hh"
 #include "eevee_lamp_points.hh"
 #include "eevee_settings.hh"
 #include "eevee_shaders.hh"
@@ -101,7 +102,10 @@ struct FrameStep {
   enum class Part { First, Rows, Each, Last } part;
   /** Decides whether the step is drawn. Called before each sample or target. */
   std::function<Need(const FrameState &)> need;
-  /** Names of the resources that the step reads and writes, as in reports. */
+  /**
+   * Names of textures and buffers: those written by steps that the step reads, and those that it writes. "target"
+   * stands for the attachments of the draw's target. Builds with assertions check both lists. \see FrameCheck
+   */
   std::vector<std::string_view> reads{};
   std::vector<std::string_view> writes{};
   /** In the order in which they are drawn. */
@@ -164,6 +168,8 @@ class Frame {
 
  private:
   std::vector<DrawnStep> steps_;
+  /** Used in builds with assertions. */
+  FrameCheck check_;
 };
 
 /** Append the visible calls of the current step's passes to \a list, and count them. */
@@ -191,8 +197,8 @@ inline gpu::Texture create_target(gpu::Device &device, const char *name, gpu::Fo
 /** Binds the resources that a program with lighting reads, except the textures of the material. */
 using BindLit = std::function<void(draw::ShadingGroup &)>;
 
-/** Names of the textures that shadows are drawn into, for FrameStep::reads. */
-[[nodiscard]] std::vector<std::string_view> shadow_targets();
+/** FrameStep::reads of a step whose programs light surfaces. */
+[[nodiscard]] std::vector<std::string_view> lit_reads();
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";

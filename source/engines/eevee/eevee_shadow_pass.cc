@@ -250,7 +250,8 @@ FrameStep shadows_step(Shadows &shadows, ShadowPass &pass, const DepthFeedback &
                                                         : Need{false, nothing_seen};
               },
           .reads = {"depth"},
-          .writes = shadow_targets(),
+          .writes = {"shadow_render_block", "shadow_cubes", "shadow_maps", "shadow_distance_cube", "shadow_esm",
+                     "shadow_esm_half", "shadow_evsm", "esm_distance", "esm_rows"},
           .record =
               [&](FrameSample &sample, gpu::CommandList &list) {
                 draw::Viewport &viewport = sample.viewport;

@@ -184,7 +184,7 @@ FrameStep SurfacePasses::step()
   return {.name = "lit",
           .part = FrameStep::Part::Rows,
           .need = [this](const FrameState &state) { return need(state); },
-          .reads = shadow_targets(),
+          .reads = lit_reads(),
           .writes = {"radiance"},
           .passes = {{&pass_, "objects in the view",
                       [this](const FrameState &) { return depth_.has_gbuffer() ? all_in_gbuffer : nothing_seen; }},

@@ -93,7 +93,7 @@ FrameStep TargetOutput::depth_step(std::vector<FramePass> passes)
           .when = FrameStep::When::EachTarget,
           .part = FrameStep::Part::Each,
           .need = [this](const FrameState &state) { return need_depth(state); },
-          .writes = {"picture_depth"},
+          .writes = {"view_block", "picture_depth"},
           .passes = std::move(passes),
           .record = [this](FrameSample &sample, gpu::CommandList &list) { draw_depth(sample, list); },
           .submitted = [this](FrameSample &) { has_picture_depth_ = true; }};
@@ -105,7 +105,7 @@ FrameStep TargetOutput::step()
           .when = FrameStep::When::EachTarget,
           .part = FrameStep::Part::Each,
           .need = [this](const FrameState &state) { return need(state); },
-          .reads = {"film", "picture_depth"},
+          .reads = {"film", "depth", "picture_depth"},
           .writes = {"target"},
           .passes = {{&pass_, "a target was given"}},
           .record = [this](FrameSample &sample, gpu::CommandList &list) { draw(sample, list); }};

@@ -65,7 +65,7 @@ FrameStep ViewLights::points_step()
                 return state.is_seen ? Need{true, "each sample sees one point of each lamp with a size"}
                                      : Need{false, nothing_seen};
               },
-          .writes = {"light_block", "light_texture"},
+          .writes = {"light_block", "light_texture", "world_block"},
           .record =
               [this](FrameSample &sample, gpu::CommandList &list) {
                 points_ =
