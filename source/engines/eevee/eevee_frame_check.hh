@@ -3,8 +3,8 @@
 
 #include "gpu_command_list.hh"
 
-#include <set>
 #include <utility>
+#include <vector>
 
 namespace gnomon::eevee {
 
@@ -21,8 +21,24 @@ class FrameCheck {
   void check(const FrameStep &step, const gpu::CommandList &list, const gpu::Device &device);
 
  private:
-  /** Textures and buffers that the checked lists have written. */
-  std::set<std::pair<gpu::ResourceKind, gpu::ResourceId>> written_;
+  /** A texture or a buffer. */
+  using Resource = std::pair<gpu::ResourceKind, gpu::ResourceId>;
+  struct Attachment {
+    Resource texture;
+    /** The state that writes it. */
+    gpu::State write;
+  };
+
+  /** Sets reads_ and writes_. \a has_attachments: attachments count: as written if they are drawn or cleared, otherwise
+   * as read. */
+  void collect(const gpu::CommandList &list, const gpu::Device &device, bool has_attachments);
+
+  // Members, because a frame like the previous one must not allocate.
+  std::vector<Resource> reads_;
+  std::vector<Resource> writes_;
+  std::vector<Attachment> attachments_;
+  /** Resources that the checked lists have written. Sorted, without duplicates. */
+  std::vector<Resource> written_;
 };
 
 }  // namespace gnomon::eevee
