@@ -14,7 +14,7 @@ void add_backend_option(CLI::App &command, std::string &backend, std::string_vie
       null.empty() ? gpu::drawing_backend_names : std::span<const std::string_view>(gpu::backend_names);
   command
       .add_option("--backend", backend,
-                  fmt::format("gl, vulkan, auto: OpenGL if it starts, except on NVIDIA, otherwise Vulkan{}{}",
+                  fmt::format("gl, vulkan, auto: OpenGL if it starts, otherwise Vulkan{}{}",
                               null.empty() ? "" : ", or null: ", null))
       ->capture_default_str()
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));

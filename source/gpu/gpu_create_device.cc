@@ -23,28 +23,20 @@ std::unique_ptr<Device> create_vulkan(const DeviceDesc &desc)
 std::unique_ptr<Device> create_any(const DeviceDesc &desc)
 {
   std::string reason;
-  std::unique_ptr<Device> gl;
   try {
-    gl = create_gl(desc);
-    if (!draws_wrong(gl->description())) {
-      return gl;
-    }
-    reason = fmt::format("pictures by {} are known to be wrong", gl->description());
+    return create_gl(desc);
   }
   // Other errors are those of the caller, such as a context of its own that is current.
   catch (const TransientError &error) {
-    reason = fmt::format("OpenGL does not start: {}", error.what());
+    reason = error.what();
   }
   try {
     std::unique_ptr<Device> device = create_vulkan(desc);
-    send_message(desc.sink, fmt::format("backend: {}, because {}", device->description(), reason));
+    send_message(desc.sink,
+                 fmt::format("backend: {}, because OpenGL does not start: {}", device->description(), reason));
     return device;
   }
   catch (const Error &error) {
-    if (gl) {
-      send_message(desc.sink, fmt::format("backend: {}, and Vulkan does not start: {}", reason, error.what()));
-      return gl;
-    }
     throw TransientError("{}; {}", reason, error.what());
   }
 }
@@ -58,11 +50,6 @@ Backend backend_of(std::string_view name)
     throw Error("no backend '{}'; there are: {}", name, fmt::join(backend_names, ", "));
   }
   return Backend(found - backend_names.begin());
-}
-
-bool draws_wrong(std::string_view description)
-{
-  return description.find("NVIDIA") != std::string_view::npos;
 }
 
 std::unique_ptr<Device> create_device(const DeviceDesc &desc)

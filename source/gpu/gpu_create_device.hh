@@ -8,10 +8,7 @@
 
 namespace gnomon::gpu {
 
-/**
- * Auto: OpenGL 4.5; Vulkan where OpenGL does not start, or where its driver draws wrong pictures and Vulkan starts.
- * Null: draws nothing.
- */
+/** Auto: OpenGL 4.5 if it starts, otherwise Vulkan. Null: draws nothing. */
 enum class Backend : std::uint8_t { Auto, OpenGl, Vulkan, Null };
 
 /** "auto", "gl", "vulkan", "null": for users, in the order of Backend. */
@@ -20,13 +17,6 @@ inline constexpr std::array<std::string_view, 4> backend_names = {"auto", "gl", 
 inline constexpr std::span<const std::string_view> drawing_backend_names = std::span(backend_names).first<3>();
 /** \throws Error if \a name is none of backend_names */
 [[nodiscard]] Backend backend_of(std::string_view name);
-
-/**
- * Whether pictures of this driver for OpenGL are known to be wrong: NVIDIA's.
- * \param description: Device::description()
- * \see doc/vulkan.md, "NVIDIA"
- */
-[[nodiscard]] bool draws_wrong(std::string_view description);
 
 struct DeviceDesc {
   Backend backend = Backend::Auto;

@@ -307,8 +307,7 @@ void define_renderer(py::module_ &module)
                                               "are used on one thread: the one that made "
                                               "it.")
       .def(py::init<const std::string &>(), py::arg("backend") = "auto",
-           "backend: 'gl', 'vulkan', or 'auto': OpenGL if it starts, except on NVIDIA, otherwise Vulkan. Raises "
-           "DeviceError, which names "
+           "backend: 'gl', 'vulkan', or 'auto': OpenGL if it starts, otherwise Vulkan. Raises DeviceError, which names "
            "each way that was tried and why it failed.")
       .def_property_readonly(
           "description", [](Device &device) { return device.use().description(); }, "API, driver and kind of context.")

@@ -20,12 +20,5 @@ TEST(CreateDevice, NullNeedsNoDriver)
   test::expect_contains(create_device({.backend = Backend::Null})->description(), "null");
 }
 
-TEST(CreateDevice, DriversThatDrawWrongPicturesAreKnown)
-{
-  EXPECT_TRUE(draws_wrong("OpenGL 4.5.0 NVIDIA 580.159.04, NVIDIA H200/PCIe/SSE2 (EGL device 0)"));
-  EXPECT_FALSE(
-      draws_wrong("OpenGL 4.5 (Core Profile) Mesa 22.3.6, llvmpipe (LLVM 15.0.6, 256 bits) (EGL surfaceless)"));
-}
-
 }  // namespace
 }  // namespace gnomon::gpu

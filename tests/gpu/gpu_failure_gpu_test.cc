@@ -167,6 +167,50 @@ TEST_F(FailureGpu, APoolThatCannotGrowLeavesAllBatches)
   expect_drawn(after, 6);
 }
 
+TEST_F(FailureGpu, ADriverThatIgnoresRepeatedClearsOfDepthDrawsRight)
+{
+  static auto get_string = epoxy_glGetString;
+  framebuffer = {};
+  picture = {};
+  shader = {};
+  device.reset();
+  {
+    const Hook vendor(
+        epoxy_glGetString, +[](GLenum name) {
+          return name == GL_VENDOR ? reinterpret_cast<const GLubyte *>("NVIDIA Corporation") : get_string(name);
+        });
+    device = create_gl_device({.is_debug = false, .sink = [](std::string_view /*text*/) {}});
+  }
+  picture = device->create_texture({.name = "p", .format = Format::RGBA32F, .width = 4, .height = 4});
+  const Texture depth = device->create_texture({.name = "d", .format = Format::Depth32F, .width = 4, .height = 4});
+  framebuffer = device->create_framebuffer({"p", {{&picture}}, {&depth}});
+  shader = make_shader(*device, "color", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  const Batch near = test::full_triangle(*device, 0.75F);
+  const Batch far = test::full_triangle(*device, 0.25F);
+  const auto expect_drawn_alone = [&](const Batch &batch, float value) {
+    CommandList list;
+    list.begin_pass("p", framebuffer, {.depth_load = LoadAction::Clear});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor | State::WriteDepth | State::DepthNearerEqual);
+    test::push_constants(list, shader, glm::vec4(value));
+    test::append_draw(list, batch);
+    list.end_pass();
+    device->submit(list);
+    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(value)));
+  };
+  expect_drawn_alone(near, 1);
+  static float cleared;
+  cleared = 0;
+  static auto clear = epoxy_glClearNamedFramebufferfv;
+  const Hook hook(
+      epoxy_glClearNamedFramebufferfv, +[](GLuint name, GLenum buffer, GLint index, const GLfloat *value) {
+        if (buffer != GL_DEPTH || std::exchange(cleared, *value) != *value) {
+          clear(name, buffer, index, value);
+        }
+      });
+  expect_drawn_alone(far, 2);
+}
+
 /** As NVIDIA's driver does it: copies are executed before draws and by glFinish, but after a later glBufferSubData. */
 TEST_F(FailureGpu, ACopyThatTheDriverDelaysDoesNotReplaceALaterWrite)
 {

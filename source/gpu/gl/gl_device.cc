@@ -14,6 +14,13 @@ namespace gnomon::gpu {
 
 namespace {
 
+/** glGetString(); "?" if the driver has none. */
+const char *driver_string(GLenum name)
+{
+  const GLubyte *value = glGetString(name);
+  return value ? reinterpret_cast<const char *>(value) : "?";
+}
+
 Limits query_limits()
 {
   const auto get = [](GLenum name) {
@@ -50,8 +57,7 @@ Limits query_limits()
   constexpr int components_of_location = 4;
   limits.varying_location_max =
       std::min(get(GL_MAX_VERTEX_OUTPUT_COMPONENTS), get(GL_MAX_FRAGMENT_INPUT_COMPONENTS)) / components_of_location;
-  const GLubyte *renderer = glGetString(GL_RENDERER);
-  const std::string_view name = renderer != nullptr ? reinterpret_cast<const char *>(renderer) : "";
+  const std::string_view name = driver_string(GL_RENDERER);
   limits.is_software = name.starts_with("llvmpipe") || name.starts_with("softpipe");
   limits.has_vertex_layer = epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
   return limits;
@@ -97,6 +103,7 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageCallback(&GlDevice::receive_message, this);
   }
+  has_unsound_depth_clears_ = std::string_view(driver_string(GL_VENDOR)) == "NVIDIA Corporation";
   glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timestamp_bits_);
   create_vertex_arrays();
 }
@@ -256,11 +263,7 @@ std::optional<double> GlDevice::seconds_take(ResourceId query)
 
 std::string GlDevice::description() const
 {
-  const auto text = [](GLenum name) {
-    const GLubyte *value = glGetString(name);
-    return value ? reinterpret_cast<const char *>(value) : "?";
-  };
-  return fmt::format("OpenGL {}, {} ({})", text(GL_VERSION), text(GL_RENDERER),
+  return fmt::format("OpenGL {}, {} ({})", driver_string(GL_VERSION), driver_string(GL_RENDERER),
                      context_ ? context_->description() : "host's context");
 }
 

@@ -195,6 +195,12 @@ class GlDevice final : public Device {
   bool is_lost_ = false;
   /** Of textures, since the last driver_trim(). */
   std::size_t destroyed_bytes_ = 0;
+  /**
+   * NVIDIA's driver (580.159): if a depth attachment is cleared to the value of its previous clear, later depth tests
+   * in full tiles of 16x16 pixels can read the cleared depth instead of what was drawn since. A clear to another value
+   * in between prevents it.
+   */
+  bool has_unsound_depth_clears_ = false;
   /** Bits of the GL_TIMESTAMP counter; 0: the driver has no timer. */
   GLint timestamp_bits_ = 0;
   /** \see unsaveable_state */

@@ -286,6 +286,10 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
   }
   if (framebuffer.has_depth) {
     if (actions.depth_load == LoadAction::Clear) {
+      if (has_unsound_depth_clears_) {
+        const float other_depth = actions.clear_depth == 0.5F ? 0.25F : 0.5F;
+        glClearNamedFramebufferfv(framebuffer.name, GL_DEPTH, 0, &other_depth);
+      }
       glClearNamedFramebufferfv(framebuffer.name, GL_DEPTH, 0, &actions.clear_depth);
     }
     else if (actions.depth_load == LoadAction::DontCare) {
