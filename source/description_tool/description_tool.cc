@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Prints doc/properties.md: the rows of all properties and settings. scripts/describe writes the file.
+// Prints doc/properties.md, the rows of all properties and settings, or doc/frame.md, the steps of a frame.
+// scripts/describe writes the files.
 #include "view_settings.hh"
 
+#include "eevee_engine_data.hh"
 #include "eevee_settings.hh"
 #include "gltf_import.hh"
 
@@ -119,7 +121,7 @@ void print_settings(std::string_view title, std::string_view script_prefix)
   });
 }
 
-void print_page()
+void print_properties_page()
 {
   fmt::print(
       "# Properties and settings\n\n"
@@ -147,12 +149,57 @@ void print_page()
   print_settings<view::Settings>("The window alone", "render.");
 }
 
+std::string list_text(std::span<const std::string_view> names)
+{
+  std::vector<std::string> items;
+  for (const std::string_view name : names) {
+    items.push_back(code(name));
+  }
+  return fmt::format("{}", fmt::join(items, ", "));
+}
+
+void print_frame_page()
+{
+  fmt::print(
+      "# Steps of a frame\n\n"
+      "`scripts/describe` writes this page from the steps of the engine's [modules](decisions/0037-modules.md). A test "
+      "compares both. The steps are in the order in which they are drawn, and each is one command list. Builds with "
+      "assertions check the textures and buffers that it reads and writes; those that no step writes are not listed. "
+      "`target` stands for the attachments of a draw's target. `gnomon render --explain` prints the steps that a scene "
+      "needs, and the step that wrote what each of them reads.\n");
+  print_header("Steps", {"step", "", "passes", "reads", "writes"});
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  const scene::Scene scene;
+  render_scene::RenderScene render_scene(*device, scene);
+  std::weak_ptr<eevee::SharedData> shared;
+  const eevee::Data data(render_scene, shared);
+  for (const eevee::DrawnStep &drawn : data.frame.steps()) {
+    const eevee::FrameStep &step = drawn.step;
+    std::vector<std::string_view> passes;
+    for (const eevee::FramePass &pass : step.passes) {
+      passes.push_back(pass.pass->name());
+    }
+    print_row(
+        {code(step.name), std::string(step.summary), list_text(passes), list_text(step.reads), list_text(step.writes)});
+  }
+}
+
 }  // namespace
 
 }  // namespace gnomon
 
-int main()
+int main(int argument_count, char **arguments)
 {
-  gnomon::print_page();
+  const std::string_view page = argument_count == 2 ? arguments[1] : "";
+  if (page == "properties") {
+    gnomon::print_properties_page();
+  }
+  else if (page == "frame") {
+    gnomon::print_frame_page();
+  }
+  else {
+    fmt::print(stderr, "usage: {} properties|frame\n", arguments[0]);
+    return 2;
+  }
   return 0;
 }

@@ -193,6 +193,9 @@ static std::string_view no_convergence(const FrameState & /*state*/)
 FrameStep AdaptiveSampling::depth_step()
 {
   return {.name = "adaptive_depth",
+          .summary =
+              "With a noise threshold and after the first samples, depths that hide all objects behind converged "
+              "pixels ([decision 0032](decisions/0032-adaptive-sampling.md)).",
           .part = FrameStep::Part::First,
           .need = [this](const FrameState &state) { return need_of(state, "the depth test skips converged pixels"); },
           .reads = {"drawn_converged"},
@@ -205,6 +208,7 @@ FrameStep AdaptiveSampling::depth_step()
 FrameStep AdaptiveSampling::background_step()
 {
   return {.name = "adaptive_background",
+          .summary = "Gives converged pixels the depth of the background, so that deferred lighting skips them.",
           .part = FrameStep::Part::First,
           .need =
               [this](const FrameState &state) {
@@ -223,6 +227,7 @@ FrameStep AdaptiveSampling::background_step()
 FrameStep AdaptiveSampling::forward_depth_step()
 {
   return {.name = "adaptive_forward_depth",
+          .summary = "As adaptive_depth, if there is a G-buffer and objects outside of it.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {
@@ -242,6 +247,7 @@ FrameStep AdaptiveSampling::forward_depth_step()
 FrameStep AdaptiveSampling::film_step()
 {
   return {.name = "adaptive_film",
+          .summary = "The same for pixels that are not converged. The others keep their mean.",
           .part = FrameStep::Part::Last,
           .need = [this](const FrameState &state) { return need_of(state, "converged pixels keep their mean"); },
           .reads = {"film_converged", "radiance"},
@@ -261,6 +267,7 @@ FrameStep AdaptiveSampling::film_step()
 FrameStep AdaptiveSampling::test_step()
 {
   return {.name = "adaptive_test",
+          .summary = "Finds the converged pixels of the film, once a picture.",
           .part = FrameStep::Part::Last,
           .need = [this](const FrameState &state) { return need_test(state); },
           .reads = {"film"},
@@ -282,6 +289,7 @@ FrameStep AdaptiveSampling::test_step()
 FrameStep AdaptiveSampling::spread_step()
 {
   return {.name = "adaptive_spread",
+          .summary = "Finds the pixels of the radiance that only converged pixels read.",
           .part = FrameStep::Part::Last,
           .need =
               [this](const FrameState &state) {

@@ -49,6 +49,7 @@ void BackgroundPass::set_rays(const FrameSample &sample)
 FrameStep BackgroundPass::step()
 {
   return {.name = "background",
+          .summary = "The world behind the objects, if the background shows it.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {

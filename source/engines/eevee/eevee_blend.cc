@@ -104,6 +104,7 @@ void BlendPass::order(const render_scene::RenderScene &scene, const draw::View &
 FrameStep BlendPass::behind_step()
 {
   return {.name = "blend_behind",
+          .summary = "Blended surfaces behind a surface that transmits light.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {
@@ -125,6 +126,7 @@ FrameStep BlendPass::behind_step()
 FrameStep BlendPass::step()
 {
   return {.name = "blend",
+          .summary = "Blended surfaces over what is behind them, from back to front.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {

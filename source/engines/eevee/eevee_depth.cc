@@ -125,6 +125,9 @@ Need DepthPasses::need_forward(const FrameState &state) const
 FrameStep DepthPasses::gbuffer_step()
 {
   return {.name = "gbuffer",
+          .summary =
+              "Normals, materials and depths of plain objects, if at least half of the meshes are plain ([decision "
+              "0030](decisions/0030-deferred-lighting.md)).",
           .part = FrameStep::Part::First,
           .need = [this](const FrameState &state) { return need_gbuffer(state); },
           .reads = {"view_block"},
@@ -140,33 +143,36 @@ FrameStep DepthPasses::gbuffer_step()
 
 FrameStep DepthPasses::prepass_step()
 {
-  return {.name = "depth_prepass",
-          .part = FrameStep::Part::First,
-          .need = [this](const FrameState &state) { return need_prepass(state); },
-          .reads = {"view_block"},
-          .writes = {"depth"},
-          .passes = {passes()[0], passes()[1]},
-          .record =
-              [this](FrameSample &sample, gpu::CommandList &list) {
-                record_pass(sample, list, buffers_.depth_fb,
-                            {.depth_load = has_gbuffer() ? gpu::LoadAction::Load : depth_load(sample),
-                             .scissor = depth_region(sample)});
-                if (sample.awaits_depths) {
-                  feedback_.request(sample.view);
-                }
-              },
-          .submitted =
-              [this](FrameSample &sample) {
-                if (sample.awaits_depths) {
-                  feedback_.read_back(sample.viewport.device(), sample.viewport.depth_texture());
-                }
-              },
-          .is_read_back = true};
+  return {
+      .name = "depth_prepass",
+      .summary = "Depths of objects outside of the G-buffer, if there is none or cascades are fitted.",
+      .part = FrameStep::Part::First,
+      .need = [this](const FrameState &state) { return need_prepass(state); },
+      .reads = {"view_block"},
+      .writes = {"depth"},
+      .passes = {passes()[0], passes()[1]},
+      .record =
+          [this](FrameSample &sample, gpu::CommandList &list) {
+            record_pass(sample, list, buffers_.depth_fb,
+                        {.depth_load = has_gbuffer() ? gpu::LoadAction::Load : depth_load(sample),
+                         .scissor = depth_region(sample)});
+            if (sample.awaits_depths) {
+              feedback_.request(sample.view);
+            }
+          },
+      .submitted =
+          [this](FrameSample &sample) {
+            if (sample.awaits_depths) {
+              feedback_.read_back(sample.viewport.device(), sample.viewport.depth_texture());
+            }
+          },
+      .is_read_back = true};
 }
 
 FrameStep DepthPasses::lighting_step()
 {
   return {.name = "deferred_lit",
+          .summary = "Shades the pixels of the G-buffer.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {
@@ -187,6 +193,7 @@ FrameStep DepthPasses::lighting_step()
 FrameStep DepthPasses::forward_step()
 {
   return {.name = "forward_depth",
+          .summary = "The depth prepass of objects outside of the G-buffer.",
           .part = FrameStep::Part::Rows,
           .need = [this](const FrameState &state) { return need_forward(state); },
           .reads = {"view_block"},

@@ -99,6 +99,9 @@ Need Film::need(const FrameState &state) const
 FrameStep Film::step()
 {
   return {.name = "film",
+          .summary =
+              "Adds the sample and its neighbours, weighted by the pixel filter. The radiance has a guard band of one "
+              "pixel for it.",
           .part = FrameStep::Part::Last,
           .need = [this](const FrameState &state) { return need(state); },
           .reads = {"radiance"},

@@ -92,6 +92,8 @@ struct FramePass {
 
 struct FrameStep {
   std::string_view name;
+  /** Markdown for doc/frame.md. */
+  std::string_view summary;
   /** EachSample: drawn with each sample of the picture. EachTarget: drawn with each draw that has a target. */
   enum class When { EachSample, EachTarget } when = When::EachSample;
   /**

@@ -100,11 +100,36 @@ FrameNode shadow_step_node(const ReportSource &source, const Need &need)
           .count = layers};
 }
 
+/**
+ * What \a step reads of the steps in \a drawn_before, each with the last of them that wrote it. \a live: names of all
+ * resources.
+ */
+FrameNode read_node(const FrameStep &step, std::span<const FrameStep *const> drawn_before,
+                    const std::set<std::string_view> &live)
+{
+  std::vector<std::string> reads;
+  for (const std::string_view name : step.reads) {
+    const auto writer = std::ranges::find_if(drawn_before.rbegin(), drawn_before.rend(), [&](const FrameStep *before) {
+      return std::ranges::find(before->writes, name) != before->writes.end();
+    });
+    if (writer != drawn_before.rend() && live.contains(name)) {
+      reads.push_back(fmt::format("{} of {}", name, (*writer)->name));
+    }
+  }
+  return {.what = "reads", .is_made = !reads.empty(), .why = fmt::format("{}", fmt::join(reads, ", "))};
+}
+
 FrameNode pass_nodes(const ReportSource &source)
 {
   const Data &data = source.data;
   const FrameState state = data.state(source.settings);
   std::vector<FrameNode> nodes;
+  std::vector<const FrameStep *> drawn_before;
+  const std::vector<gpu::LiveResource> resources = source.device().live();
+  std::set<std::string_view> live;
+  for (const gpu::LiveResource &resource : resources) {
+    live.insert(resource.name);
+  }
   for (const DrawnStep &drawn : data.frame.steps()) {
     const FrameStep &step = drawn.step;
     const Need need = drawn.need_in(state);
@@ -129,6 +154,12 @@ FrameNode pass_nodes(const ReportSource &source)
       node = folder(std::string(step.name), reason, need.is_needed ? nothing_seen : reason, std::move(passes));
     }
     node.seconds = drawn.taken_seconds;
+    if (node.is_made) {
+      if (FrameNode reads = read_node(step, drawn_before, live); reads.is_made) {
+        node.children.push_back(std::move(reads));
+      }
+      drawn_before.push_back(&step);
+    }
     nodes.push_back(std::move(node));
   }
   return folder("passes", "runs of the last picture", nothing_seen, std::move(nodes));

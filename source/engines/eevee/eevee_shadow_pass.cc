@@ -242,6 +242,7 @@ void ShadowPass::add_casters(render_scene::RenderScene &scene, std::span<const d
 FrameStep shadows_step(Shadows &shadows, ShadowPass &pass, const DepthFeedback &feedback)
 {
   return {.name = "shadows",
+          .summary = "Draws and filters the layers of lamps that are not up to date.",
           .part = FrameStep::Part::Each,
           .need =
               [](const FrameState &state) {

@@ -182,6 +182,7 @@ Need SurfacePasses::need(const FrameState &state) const
 FrameStep SurfacePasses::step()
 {
   return {.name = "lit",
+          .summary = "Shades each pixel of other objects once, by an equal-depth test.",
           .part = FrameStep::Part::Rows,
           .need = [this](const FrameState &state) { return need(state); },
           .reads = lit_reads(),

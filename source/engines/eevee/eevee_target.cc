@@ -90,6 +90,7 @@ void TargetOutput::draw(FrameSample &sample, gpu::CommandList &list) const
 FrameStep TargetOutput::depth_step(std::vector<FramePass> passes)
 {
   return {.name = "picture_depth",
+          .summary = "Depths without the sample's offset, if the target takes depth.",
           .when = FrameStep::When::EachTarget,
           .part = FrameStep::Part::Each,
           .need = [this](const FrameState &state) { return need_depth(state); },
@@ -102,6 +103,7 @@ FrameStep TargetOutput::depth_step(std::vector<FramePass> passes)
 FrameStep TargetOutput::step()
 {
   return {.name = "tonemap",
+          .summary = "Exposure, view transform and depth in the target's rectangle.",
           .when = FrameStep::When::EachTarget,
           .part = FrameStep::Part::Each,
           .need = [this](const FrameState &state) { return need(state); },

@@ -74,6 +74,7 @@ FramePass Transmission::depths() const
 FrameStep Transmission::copy_step()
 {
   return {.name = "behind",
+          .summary = "A copy of the radiance with mip levels, if a visible surface transmits light.",
           .part = FrameStep::Part::Rows,
           .need =
               [](const FrameState &state) {
@@ -94,6 +95,7 @@ FrameStep Transmission::copy_step()
 FrameStep Transmission::step()
 {
   return {.name = "transmission",
+          .summary = "The nearest surfaces that transmit light refract the copy.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {

@@ -55,6 +55,8 @@ void ViewLights::update_lists(const FrameSample &sample, gpu::CommandList &list)
 FrameStep ViewLights::points_step()
 {
   return {.name = "lamp_points",
+          .summary =
+              "Moves each lamp with a size to one of its points, and gives emissive surfaces lamps at some of theirs.",
           .part = FrameStep::Part::Each,
           .need =
               [](const FrameState &state) {
@@ -78,6 +80,9 @@ FrameStep ViewLights::points_step()
 FrameStep ViewLights::lists_step()
 {
   return {.name = "light_clusters",
+          .summary =
+              "If many lamps have a range, lists those that reach each part of the view ([decision "
+              "0024](decisions/0024-light-clusters.md)).",
           .part = FrameStep::Part::Each,
           .need =
               [](const FrameState &state) {

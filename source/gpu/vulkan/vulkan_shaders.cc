@@ -2,7 +2,6 @@
 #include "vulkan_shaders.hh"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 
 namespace gnomon::gpu {
@@ -155,7 +154,9 @@ std::vector<std::byte> packed(const std::vector<SpirvStage> &stages)
 std::vector<SpirvStage> unpacked(const std::vector<std::byte> &bytes)
 {
   std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
-  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(std::uint32_t));
+  // memcpy() does not take the null pointers of empty lists.
+  std::ranges::copy(std::span(bytes).first(words.size() * sizeof(std::uint32_t)),
+                    std::as_writable_bytes(std::span(words)).begin());
   std::vector<SpirvStage> stages;
   for (std::size_t i = 0; i < words.size();) {
     if (i + 2 + spirv_header_words > words.size() || words[i] > std::uint32_t(ShaderStage::Fragment) ||

@@ -30,6 +30,7 @@ class FrameCheckTest : public testing::Test {
              std::vector<std::string_view> writes)
   {
     frame_check.check({.name = "step",
+                       .summary = "",
                        .part = FrameStep::Part::Each,
                        .need = {},
                        .reads = std::move(reads),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Scenes without one feature each: the backend's counts and names show that nothing was created or run for it.
 #include "eevee_test_scene.hh"
+#include "gpu/gpu_testing.hh"
 
 #include "measure_left_out.hh"
 
@@ -326,6 +327,20 @@ TEST(LeftOutOfTheHost, TheTreeNamesAMeshWhoseBuffersTheHostHasNotNamed)
   EXPECT_TRUE(warnings().empty());
   EXPECT_EQ(with.bytes, 0U);
   EXPECT_EQ(with.upload_bytes, 0U);
+}
+
+TEST_F(LeftOut, TheTreeNamesTheStepThatWroteWhatAStepReads)
+{
+  const auto reads = [](const std::string &name, const std::string &step) {
+    return node_at(taken.at(name).tree, {"passes", step, "reads"}).why;
+  };
+  EXPECT_EQ(reads("full", "deferred_lit").substr(0, 17), "depth of gbuffer,");
+  // Of several steps that write it, the last.
+  test::expect_contains(reads("full", "lit"),
+                        "depth of forward_depth, shadow_cubes of shadows, shadow_maps of shadows");
+  EXPECT_EQ(reads("no shadow", "lit"), "depth of forward_depth");
+  EXPECT_EQ(reads("full", "film"), "radiance of lit");
+  EXPECT_EQ(reads("full", "tonemap"), "film of film, depth of forward_depth");
 }
 
 TEST_F(LeftOut, TheTreeGivesTheReason)
