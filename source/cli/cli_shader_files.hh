@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "cli.hh"
+
 #include "shader_check.hh"
 
 #include <filesystem>
@@ -18,5 +20,32 @@ namespace gnomon::cli {
 
 /** The path without the part that stage_of() reads. All stages of a program have the same stem. */
 [[nodiscard]] std::string stem_of(const std::filesystem::path &path);
+
+/** Adds \a file to the program of its name in \a programs, or to a new one. */
+void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage stage, const std::string &file);
+
+/**
+ * Adds the stages between the vertex and the fragment stage of \a program that lie beside them: without those the
+ * interfaces of the given ones do not meet.
+ */
+void add_stages_between(shader_check::Program &program);
+
+/** Why \a file has no stage: endings that stage_of() knows. */
+[[nodiscard]] std::string unknown_stage(const std::string &file);
+
+/** Converts `NAME=VALUE` or `NAME` to a define; empty if there is no name. */
+[[nodiscard]] std::string shader_define(const std::string &argument);
+
+/** A define for every stage from NAME or NAME=VALUE of -D. \throws UsageError */
+[[nodiscard]] std::string define_of(const std::string &argument);
+
+/** Adds -I and -D. */
+void add_source_options(CLI::App &command, std::vector<std::string> &include_folders,
+                        std::vector<std::string> &defines);
+
+/** Names for --target: auto, vulkan and those of all targets. */
+[[nodiscard]] std::vector<std::string> target_names();
+/** Of a name other than auto; vulkan is Vulkan 1.2. */
+[[nodiscard]] shader_check::CheckTarget target_of(const std::string &name);
 
 }  // namespace gnomon::cli

@@ -222,13 +222,6 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
 
 }  // namespace
 
-std::string shader_define(const std::string &argument)
-{
-  const std::size_t equals = argument.find('=');
-  const std::string name = argument.substr(0, equals);
-  return name.empty() ? "" : name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
-}
-
 ShaderManifest read_shader_manifest(const fs::path &path)
 {
   std::ifstream stream(path);

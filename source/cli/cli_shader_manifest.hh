@@ -29,7 +29,4 @@ inline constexpr std::size_t permutations_max = 65536;
 /** \throws std::runtime_error that names the file, the place in it and the reason */
 [[nodiscard]] ShaderManifest read_shader_manifest(const std::filesystem::path &path);
 
-/** Converts `NAME=VALUE` or `NAME` to a define; empty if there is no name. */
-[[nodiscard]] std::string shader_define(const std::string &argument);
-
 }  // namespace gnomon::cli

@@ -48,8 +48,7 @@ std::vector<shader_check::CheckTarget> targets_of(const std::string &name)
   if (name == "all" || name == "auto" || name.empty()) {
     return {shader_check::CheckTarget::OpenGlSpirv, shader_check::CheckTarget::Vulkan12};
   }
-  const auto found = std::ranges::find(shader_check::check_targets(), name, &shader_check::TargetName::name);
-  return {found == shader_check::check_targets().end() ? shader_check::CheckTarget::Vulkan12 : found->target};
+  return {target_of(name)};
 }
 
 /** Reads the values of -W: NAME, no-NAME, error=NAME and error. */
@@ -216,15 +215,6 @@ ShaderReport check_engine(const CheckArguments &arguments)
   return report;
 }
 
-std::string define_of(const std::string &argument)
-{
-  std::string define = shader_define(argument);
-  if (define.empty()) {
-    throw UsageError(fmt::format("-D '{}' is not NAME or NAME=VALUE", argument));
-  }
-  return define;
-}
-
 /** A surface function in the programs that draw with it. */
 ShaderReport check_surface_function(const std::string &file, const CheckArguments &arguments)
 {
@@ -254,70 +244,6 @@ ShaderReport check_surface_function(const std::string &file, const CheckArgument
     message.file = message.file == eevee::surface_function_file ? file : engine.shown(message.file);
   }
   return report;
-}
-
-/** Whether both are stages of one pipeline of the same kind. */
-bool are_linked(shader_check::Stage a, shader_check::Stage b)
-{
-  using shader_check::Stage;
-  const auto is_mesh = [](Stage stage) { return stage == Stage::Task || stage == Stage::Mesh; };
-  const auto is_vertex = [](Stage stage) { return stage < Stage::Task; };
-  return a <= Stage::Fragment && b <= Stage::Fragment && !(is_mesh(a) && is_vertex(b)) && !(is_vertex(a) && is_mesh(b));
-}
-
-/** Adds \a file to the program of its name, or to a new one. */
-void add_file(std::vector<ShaderManifest::Entry> &entries, shader_check::Stage stage, const std::string &file)
-{
-  const std::string name = stem_of(file);
-  const auto takes = [&](const shader_check::Program &program) {
-    return program.name == name && std::ranges::all_of(program.files, [&](const auto &other) {
-             return other.stage != stage && are_linked(other.stage, stage);
-           });
-  };
-  auto entry = std::ranges::find_if(entries, takes, &ShaderManifest::Entry::program);
-  if (entry == entries.end()) {
-    entries.push_back({{name, {}, {}}, {}});
-    entry = entries.end() - 1;
-  }
-  entry->program.files.push_back({stage, file});
-}
-
-/**
- * Adds the stages between the vertex and the fragment stage of \a program that lie beside them: without those the
- * interfaces of the given ones do not meet.
- */
-void add_stages_between(shader_check::Program &program)
-{
-  using shader_check::Stage;
-  const auto path_of = [&](Stage stage) {
-    const auto file = std::ranges::find(program.files, stage, &shader_check::Program::File::stage);
-    return file == program.files.end() ? std::string() : file->path;
-  };
-  const std::string vertex = path_of(Stage::Vertex);
-  if (vertex.empty() || path_of(Stage::Fragment).empty()) {
-    return;
-  }
-  for (const Stage stage : {Stage::TessControl, Stage::TessEvaluation, Stage::Geometry}) {
-    const std::string path = path_of(stage).empty() ? with_stage(vertex, stage) : std::string();
-    if (!path.empty() && fs::is_regular_file(path)) {
-      program.files.push_back({stage, path});
-    }
-  }
-}
-
-std::string unknown_stage(const std::string &file)
-{
-  if (file.ends_with(".hlsl")) {
-    return "HLSL is not checked";
-  }
-  std::string endings;
-  for (const shader_check::StageName &stage : shader_check::stage_names()) {
-    endings += fmt::format(".{}, ", stage.ending);
-  }
-  return fmt::format(
-      "its name ends in none of {}each also as .vert.glsl and _vert.glsl, .surface.glsl, _surface.glsl; "
-      "--stage sets the stage",
-      endings);
 }
 
 /** Write a file for make and ninja: \a target depends on \a files. */
@@ -391,7 +317,7 @@ void write_output(const std::vector<ShaderManifest::Entry> &entries,
  */
 ShaderManifest programs_of_files(const CheckArguments &arguments, ShaderReport &others)
 {
-  ShaderManifest project;
+  std::vector<shader_check::Program> programs;
   for (const std::string &file : arguments.files) {
     if (arguments.stage == "surface" || (arguments.stage.empty() && is_surface_function(file))) {
       const ShaderReport report = check_surface_function(file, arguments);
@@ -405,14 +331,16 @@ ShaderManifest programs_of_files(const CheckArguments &arguments, ShaderReport &
     const std::optional<shader_check::Stage> stage =
         stage_of(arguments.stage.empty() ? fs::path(file) : fs::path("." + arguments.stage));
     if (stage) {
-      add_file(project.entries, *stage, file);
+      add_file(programs, *stage, file);
     }
     else {
       others.messages.push_back({shader_check::Severity::Error, file, 1, unknown_stage(file), "stage", file, ""});
     }
   }
-  for (ShaderManifest::Entry &entry : project.entries) {
-    add_stages_between(entry.program);
+  ShaderManifest project;
+  for (shader_check::Program &program : programs) {
+    add_stages_between(program);
+    project.entries.push_back({std::move(program), {}});
   }
   return project;
 }
@@ -560,18 +488,14 @@ void add_shaders_check(CLI::App &shaders, Status &status)
   CLI::App *command = shaders.add_subcommand("check", "Find mistakes in shaders; needs no driver");
   auto a = std::make_shared<CheckArguments>();
   command->add_option("files", a->files, "Shaders to check (default: all variants of the engine's shaders)");
-  command->add_option("-I", a->include_folders, "Folder to search for includes, after that of the including file")
-      ->allow_extra_args(false);
-  command->add_option("-D", a->defines, "NAME or NAME=VALUE, defined in every stage")->allow_extra_args(false);
+  add_source_options(*command, a->include_folders, a->defines);
   std::vector<std::string> stages{"surface"};
   for (const shader_check::StageName &stage : shader_check::stage_names()) {
     stages.emplace_back(stage.ending);
   }
   command->add_option("--stage", a->stage, "Stage of FILES (default: from their names)")->check(CLI::IsMember(stages));
-  std::vector<std::string> targets{"auto", "all", "vulkan"};
-  for (const shader_check::TargetName &target : shader_check::check_targets()) {
-    targets.emplace_back(target.name);
-  }
+  std::vector<std::string> targets = target_names();
+  targets.emplace_back("all");
   command
       ->add_option("--target", a->target,
                    "opengl (GLSL as drivers compile it), opengl-spirv, es, vulkan (1.2), vulkan1.0 to vulkan1.3, all "

@@ -5,6 +5,7 @@
 
 #include "shader_check_reflection.hh"
 
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -13,11 +14,17 @@
 
 namespace gnomon::cli {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 struct ReflectArguments {
-  std::string program;
+  /** One program of an engine, or files. */
+  std::vector<std::string> programs;
   std::optional<std::string> variant;
+  std::vector<std::string> include_folders;
+  std::vector<std::string> defines;
+  std::string target = "auto";
   std::string format = "text";
   std::string shaders;
 };
@@ -25,6 +32,7 @@ struct ReflectArguments {
 /** The variant with these defines, in any order; by default the one with most defines. */
 gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
 {
+  const std::string &program = arguments.programs.front();
   const auto sorted = [](const std::string &text) {
     std::istringstream stream(text);
     std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
@@ -32,9 +40,9 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
     return words;
   };
   std::vector<Variant> variants = engine_variants();
-  std::erase_if(variants, [&](const Variant &variant) { return variant.desc.name != arguments.program; });
+  std::erase_if(variants, [&](const Variant &variant) { return variant.desc.name != program; });
   if (variants.empty()) {
-    throw_no_program(arguments.program);
+    throw_no_program(program);
   }
   if (!arguments.variant) {
     return std::ranges::max(variants, {}, [](const Variant &variant) { return variant.desc.defines.size(); }).desc;
@@ -43,18 +51,58 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
       variants, [&](const Variant &variant) { return sorted(defines_of(variant.desc)) == sorted(*arguments.variant); });
   if (found == variants.end()) {
     throw std::runtime_error(fmt::format("program '{}' has no variant '{}'; 'gnomon shaders list' lists all variants",
-                                         arguments.program, *arguments.variant));
+                                         program, *arguments.variant));
   }
   return found->desc;
 }
 
-nlohmann::json to_json(const std::vector<gpu::ShaderInterface::Member> &members)
+/** A program with the text that tells it from others. */
+struct NamedInterface {
+  std::string name;
+  std::vector<std::string> defines;
+  shader_check::ProgramInterface interface;
+};
+
+NamedInterface engine_interface(const ReflectArguments &arguments)
 {
-  nlohmann::json list = nlohmann::json::array();
-  for (const auto &member : members) {
-    list.push_back({{"name", member.name}, {"offset", member.offset_bytes}, {"size", member.size_bytes}});
+  const EngineFiles files(arguments.shaders);
+  const gpu::ShaderDesc desc = find_variant(arguments);
+  return {desc.name, desc.defines, shader_check::program_interface(desc, files.files())};
+}
+
+std::vector<NamedInterface> file_interfaces(const ReflectArguments &arguments)
+{
+  std::vector<shader_check::Program> programs;
+  for (const std::string &file : arguments.programs) {
+    const std::optional<shader_check::Stage> stage = stage_of(file);
+    if (!stage) {
+      throw UsageError(fmt::format("{}: {}", file, unknown_stage(file)));
+    }
+    add_file(programs, *stage, file);
   }
-  return list;
+  shader_check::ProgramOptions options;
+  options.include_folders = arguments.include_folders;
+  if (arguments.target != "auto") {
+    options.target = target_of(arguments.target);
+  }
+  shader_check::FolderFiles folder{fs::path()};
+  std::vector<NamedInterface> interfaces;
+  for (shader_check::Program &program : programs) {
+    add_stages_between(program);
+    std::ranges::transform(arguments.defines, std::back_inserter(program.defines), define_of);
+    interfaces.push_back(
+        {program.name, program.defines, shader_check::program_interface(program, folder.files(), options)});
+  }
+  return interfaces;
+}
+
+std::vector<std::string_view> names_of(const std::vector<shader_check::Stage> &stages)
+{
+  std::vector<std::string_view> names;
+  for (const shader_check::Stage stage : stages) {
+    names.push_back(shader_check::to_string(stage));
+  }
+  return names;
 }
 
 nlohmann::json to_json(const std::vector<shader_check::StageVariable> &variables)
@@ -66,37 +114,31 @@ nlohmann::json to_json(const std::vector<shader_check::StageVariable> &variables
   return list;
 }
 
-void print_json(const gpu::ShaderDesc &desc, const gpu::ShaderInterface &interface,
-                const shader_check::StageVariables &variables)
+nlohmann::json to_json(const NamedInterface &program)
 {
   nlohmann::json bindings = nlohmann::json::array();
-  for (const auto &binding : interface.bindings) {
-    bindings.push_back({{"name", binding.name},
-                        {"kind", to_string(binding.kind)},
+  for (const shader_check::ProgramBinding &binding : program.interface.bindings) {
+    nlohmann::json members = nlohmann::json::array();
+    for (const shader_check::ProgramBinding::Member &member : binding.members) {
+      members.push_back(
+          {{"name", member.name}, {"type", member.type}, {"offset", member.offset_bytes}, {"size", member.size_bytes}});
+    }
+    bindings.push_back({{"kind", to_string(binding.kind)},
+                        {"name", binding.name},
+                        {"type", binding.type},
+                        {"set", binding.set},
                         {"slot", binding.slot},
                         {"size", binding.size_bytes},
-                        {"members", to_json(binding.members)}});
+                        {"stages", names_of(binding.stages)},
+                        {"members", std::move(members)}});
   }
-  nlohmann::json push_constants;
-  if (interface.push_constant_size_bytes > 0) {
-    push_constants = {{"slot", interface.push_constant_slot},
-                      {"size", interface.push_constant_size_bytes},
-                      {"members", to_json(interface.push_constant_members)}};
-  }
-  const nlohmann::json document = {{"program", desc.name},
-                                   {"defines", desc.defines},
-                                   {"bindings", bindings},
-                                   {"push_constants", push_constants},
-                                   {"inputs", to_json(variables.inputs)},
-                                   {"outputs", to_json(variables.outputs)}};
-  fmt::print("{}\n", document.dump(2));
-}
-
-void print_members(const std::vector<gpu::ShaderInterface::Member> &members)
-{
-  for (const auto &member : members) {
-    fmt::print("  {:>6} {:>6}  {}\n", member.offset_bytes, member.size_bytes, member.name);
-  }
+  return {{"program", program.name},
+          {"defines", program.defines},
+          {"target", to_string(program.interface.target)},
+          {"stages", names_of(program.interface.stages)},
+          {"bindings", std::move(bindings)},
+          {"inputs", to_json(program.interface.inputs)},
+          {"outputs", to_json(program.interface.outputs)}};
 }
 
 void print_variables(std::string_view kind, const std::vector<shader_check::StageVariable> &variables)
@@ -106,44 +148,70 @@ void print_variables(std::string_view kind, const std::vector<shader_check::Stag
   }
 }
 
-void print_text(const gpu::ShaderDesc &desc, const gpu::ShaderInterface &interface,
-                const shader_check::StageVariables &variables)
+void print_text(const NamedInterface &program)
 {
-  const std::string defines = defines_of(desc);
-  fmt::print("{}{}{}\n", desc.name, defines.empty() ? "" : " ", defines);
-  print_variables("input", variables.inputs);
-  print_variables("output", variables.outputs);
-  for (const auto &binding : interface.bindings) {
-    const bool is_texture = binding.kind == gpu::BindingKind::Texture;
-    fmt::print("{} '{}', slot {}{}\n", to_string(binding.kind), binding.name, binding.slot,
-               is_texture ? "" : fmt::format(", {} bytes; offset, size, member:", binding.size_bytes));
-    print_members(binding.members);
+  fmt::print("{}", program.name);
+  for (const std::string &define : program.defines) {
+    fmt::print(" {}", define);
   }
-  if (interface.push_constant_size_bytes > 0) {
-    fmt::print("push constants, slot {}, {} bytes; offset, size, member:\n", interface.push_constant_slot,
-               interface.push_constant_size_bytes);
-    print_members(interface.push_constant_members);
+  fmt::print(": {} for {}\n", fmt::join(names_of(program.interface.stages), ", "), to_string(program.interface.target));
+  print_variables("input", program.interface.inputs);
+  print_variables("output", program.interface.outputs);
+  for (const shader_check::ProgramBinding &binding : program.interface.bindings) {
+    fmt::print("{} {}'{}'{}, in {}", to_string(binding.kind), binding.type.empty() ? "" : binding.type + " ",
+               binding.name, binding.slot < 0 ? "" : fmt::format(", set {}, slot {}", binding.set, binding.slot),
+               fmt::join(names_of(binding.stages), ", "));
+    fmt::print("{}\n",
+               binding.members.empty() ? "" : fmt::format("; {} bytes; offset, size, member:", binding.size_bytes));
+    for (const shader_check::ProgramBinding::Member &member : binding.members) {
+      fmt::print("  {:>6} {:>6}  {} {}\n", member.offset_bytes, member.size_bytes, member.type, member.name);
+    }
   }
+}
+
+/** Programs of engines have no endings and are no files. */
+bool is_file(const std::string &program)
+{
+  return stage_of(program) || fs::exists(program);
 }
 
 void reflect(const ReflectArguments &arguments)
 {
-  const EngineFiles files(arguments.shaders);
-  const gpu::ShaderDesc desc = find_variant(arguments);
-  const gpu::ShaderInterface interface = shader_check::reflect(desc.name, gpu::preprocess(desc, files.files()));
-  const shader_check::StageVariables variables = shader_check::stage_variables(desc, files.files());
-  (arguments.format == "json" ? print_json : print_text)(desc, interface, variables);
+  const bool is_engine = arguments.programs.size() == 1 && !is_file(arguments.programs.front());
+  if (is_engine ? !arguments.defines.empty() || !arguments.include_folders.empty() || arguments.target != "auto"
+                : arguments.variant || !arguments.shaders.empty()) {
+    throw UsageError(is_engine ? "-I, -D and --target are for files"
+                               : "--variant and --shaders are for programs of engines");
+  }
+  const std::vector<NamedInterface> programs =
+      is_engine ? std::vector{engine_interface(arguments)} : file_interfaces(arguments);
+  if (arguments.format == "json") {
+    nlohmann::json document = nlohmann::json::array();
+    for (const NamedInterface &program : programs) {
+      document.push_back(to_json(program));
+    }
+    fmt::print("{}\n", (is_engine ? document[0] : document).dump(2));
+    return;
+  }
+  std::ranges::for_each(programs, print_text);
 }
 
 }  // namespace
 
 void add_shaders_reflect(CLI::App &shaders, Status &status)
 {
-  CLI::App *command = shaders.add_subcommand("reflect", "Blocks, textures, inputs and outputs of a program");
+  CLI::App *command = shaders.add_subcommand("reflect", "Blocks, textures, inputs and outputs of programs");
   auto a = std::make_shared<ReflectArguments>();
-  command->add_option("program", a->program, "Name from 'shaders list'")->required();
+  command
+      ->add_option("programs", a->programs,
+                   "Name from 'shaders list', or files, of which those of one stem are a program")
+      ->required();
   command->add_option("--variant", a->variant, "Defines of the variant (default: the variant with most)");
-  command->add_option("--format", a->format, "text, json")
+  add_source_options(*command, a->include_folders, a->defines);
+  command->add_option("--target", a->target, "Target of files, as for check")
+      ->capture_default_str()
+      ->check(CLI::IsMember(target_names()));
+  command->add_option("--format", a->format, "text, json (files: a list)")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
   command->add_option("--shaders", a->shaders, "Folder of the engine's shaders (default: those in the program)");

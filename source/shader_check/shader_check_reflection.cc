@@ -5,6 +5,8 @@
 #include "internal/shader_check_log.hh"
 #include "slots_shared.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -50,9 +52,9 @@ std::vector<gpu::ShaderInterface::Member> members_of(const glslang::TObjectRefle
 }
 
 /** glslang ends a block at its last member. std140 and drivers end it at the end of that member's row of 16 bytes. */
-std::uint32_t std140_size(const glslang::TObjectReflection &block)
+std::uint32_t std140_size(std::uint32_t size_bytes)
 {
-  return (std::uint32_t(block.size) + 15U) / 16U * 16U;
+  return (size_bytes + 15U) / 16U * 16U;
 }
 
 /** ShaderInterface::Binding::stages of an object that glslang reports. */
@@ -99,12 +101,12 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
     std::vector<gpu::ShaderInterface::Member> members = members_of(block, i, variable_count, variable);
     if (block.name == gpu::push_constant_block_name) {
       interface.push_constant_slot = block.getBinding();
-      interface.push_constant_size_bytes = std140_size(block);
+      interface.push_constant_size_bytes = std140_size(std::uint32_t(block.size));
       interface.push_constant_members = std::move(members);
       continue;
     }
-    interface.bindings.push_back({block.name, gpu::BindingKind::UniformBlock, block.getBinding(), std140_size(block),
-                                  std::move(members), stages_of(block)});
+    interface.bindings.push_back({block.name, gpu::BindingKind::UniformBlock, block.getBinding(),
+                                  std140_size(std::uint32_t(block.size)), std::move(members), stages_of(block)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
@@ -184,17 +186,137 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
   return interface;
 }
 
-StageVariables stage_variables(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files)
+std::string_view to_string(ProgramBinding::Kind kind)
 {
-  StageVariables result;
+  switch (kind) {
+    case ProgramBinding::Kind::UniformBlock: return to_string(gpu::BindingKind::UniformBlock);
+    case ProgramBinding::Kind::StorageBlock: return to_string(gpu::BindingKind::StorageBlock);
+    case ProgramBinding::Kind::Texture: return to_string(gpu::BindingKind::Texture);
+    case ProgramBinding::Kind::Image: return "image";
+    case ProgramBinding::Kind::PushConstants: break;
+  }
+  return "push constants";
+}
+
+namespace {
+
+/** Adds what \a stage uses of \a declarations. */
+void add_bindings(const std::vector<Declaration> &declarations, ProgramBinding::Kind kind, Stage stage,
+                  std::vector<ProgramBinding> &bindings)
+{
+  for (const Declaration &declaration : declarations) {
+    if (!declaration.is_used) {
+      continue;
+    }
+    ProgramBinding binding{.kind = declaration.is_push_constant ? ProgramBinding::Kind::PushConstants
+                                   : declaration.is_image       ? ProgramBinding::Kind::Image
+                                                                : kind,
+                           .name = declaration.name,
+                           .type = {},
+                           .set = declaration.set,
+                           .slot = declaration.slot,
+                           .size_bytes = declaration.size_bytes,
+                           .members = {},
+                           .stages = {stage}};
+    const auto known = std::ranges::find_if(bindings, [&](const ProgramBinding &other) {
+      return std::tie(other.kind, other.set, other.slot, other.name) ==
+             std::tie(binding.kind, binding.set, binding.slot, binding.name);
+    });
+    if (known != bindings.end()) {
+      known->stages.push_back(stage);
+      continue;
+    }
+    if (binding.kind == ProgramBinding::Kind::Texture || binding.kind == ProgramBinding::Kind::Image) {
+      binding.type = type_name(declaration.type);
+    }
+    for (const BlockMember &member : declaration.members) {
+      binding.members.push_back({member.name, type_name(member.type), member.offset_bytes, member.size_bytes});
+    }
+    bindings.push_back(std::move(binding));
+  }
+}
+
+/** Of a program that is linked for a target with SPIR-V. */
+ProgramInterface interface_of(Compilation &compilation, CheckTarget target)
+{
+  ProgramInterface result;
+  result.target = target;
+  StageFacts facts;
+  for (std::size_t i = 0; i < compilation.sources.size(); i++) {
+    const Stage stage = compilation.sources[i]->stage();
+    facts = read_spirv(compilation.spirv(i).words, stage, compilation.lines[i]);
+    result.stages.push_back(stage);
+    add_bindings(facts.uniform_blocks, ProgramBinding::Kind::UniformBlock, stage, result.bindings);
+    add_bindings(facts.storage_blocks, ProgramBinding::Kind::StorageBlock, stage, result.bindings);
+    add_bindings(facts.textures, ProgramBinding::Kind::Texture, stage, result.bindings);
+    if (i == 0) {
+      const bool is_arrayed = stage == Stage::Geometry || stage == Stage::TessControl || stage == Stage::TessEvaluation;
+      result.inputs = variables(facts.inputs, is_arrayed);
+    }
+  }
+  result.outputs = variables(facts.outputs, false);
+  for (ProgramBinding &binding : result.bindings) {
+    const bool is_uniform =
+        binding.kind == ProgramBinding::Kind::UniformBlock || binding.kind == ProgramBinding::Kind::PushConstants;
+    if (is_uniform && !is_vulkan(target)) {
+      binding.size_bytes = std140_size(binding.size_bytes);
+    }
+  }
+  std::ranges::sort(result.bindings, [](const ProgramBinding &a, const ProgramBinding &b) {
+    return std::tie(a.kind, a.set, a.slot, a.name) < std::tie(b.kind, b.set, b.slot, b.name);
+  });
+  return result;
+}
+
+}  // namespace
+
+ProgramInterface program_interface(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files)
+{
+  ProgramInterface result;
   with_large_stack([&] {
     Compilation compilation;
     compile(desc, files, compilation);
-    if (!compilation.facts.empty()) {
-      const bool is_geometry = compilation.sources.front()->stage() == Stage::Geometry;
-      result.inputs = variables(compilation.facts.front().inputs, is_geometry);
-      result.outputs = variables(compilation.facts.back().outputs, false);
+    result = interface_of(compilation, CheckTarget::OpenGlSpirv);
+  });
+  return result;
+}
+
+ProgramInterface program_interface(const Program &program, const gpu::ShaderFiles &files, const ProgramOptions &options)
+{
+  const ProgramCheck check = check_program(program, files, options);
+  std::vector<std::string> errors;
+  for (const CheckMessage &message : check.messages) {
+    if (message.severity == Severity::Error) {
+      errors.push_back(fmt::format("{}:{}: {}", message.file, message.line, message.text));
     }
+  }
+  if (!errors.empty()) {
+    throw gpu::Error("{}", fmt::join(errors, "\n"));
+  }
+  if (check.target == CheckTarget::Es) {
+    throw gpu::Error("'{}' is for {}, for which there is no SPIR-V; vulkan1.0 reads GLSL ES 3.10 and later",
+                     program.name, to_string(check.target));
+  }
+  const CheckTarget target = has_spirv(check.target) ? check.target : CheckTarget::OpenGlSpirv;
+  std::vector<Program::File> sorted = program.files;
+  std::ranges::stable_sort(sorted, {}, &Program::File::stage);
+  ProgramInterface result;
+  with_large_stack([&] {
+    Compilation compilation;
+    for (const Program::File &file : sorted) {
+      auto source = std::make_unique<StageSource>(file.stage, file.path, files(file.path).value_or(""), program.defines,
+                                                  files, options.include_folders);
+      if (!compilation.add(std::move(source), target, false)) {
+        const CompileMessage first = compile_messages(compilation.glslang.log(), *compilation.sources.back()).at(0);
+        throw gpu::Error("{}:{}: for {}: {}", compilation.file(compilation.sources.size() - 1, first.position),
+                         first.position.line, to_string(target), first.text);
+      }
+    }
+    if (!compilation.glslang.link()) {
+      throw gpu::Error("'{}' does not link for {}:\n{}", program.name, to_string(target),
+                       bounded_lines(compilation.glslang.log()));
+    }
+    result = interface_of(compilation, target);
   });
   return result;
 }

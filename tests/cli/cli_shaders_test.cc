@@ -302,16 +302,116 @@ TEST_F(ShadersTest, ReflectPrintsBlocksTexturesAndStageVariables)
   const nlohmann::json view = find("bindings", "view_block");
   EXPECT_EQ(view["kind"], "uniform");
   EXPECT_EQ(view["size"], 160);
-  EXPECT_EQ(view["members"][1], nlohmann::json({{"name", "view.position_ws"}, {"offset", 64}, {"size", 12}}));
+  EXPECT_EQ(view["members"][1],
+            nlohmann::json({{"name", "view.position_ws"}, {"type", "vec3"}, {"offset", 64}, {"size", 12}}));
   EXPECT_EQ(find("bindings", "shadow_maps")["kind"], "texture");
   EXPECT_EQ(find("inputs", "normal")["type"], "vec3");
   EXPECT_EQ(find("inputs", "draw_instance")["type"], "uvec2");
   EXPECT_EQ(find("outputs", "radiance"), nlohmann::json({{"name", "radiance"}, {"type", "vec4"}, {"location", 0}}));
 
   const Finished text = run("shaders reflect eevee_tonemap");
-  EXPECT_NE(text.out.find("push constants, slot 8, 96 bytes"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("push constants 'push_constant_block', set 0, slot 8, in fragment; 96 bytes"),
+            std::string::npos)
+      << text.out;
   EXPECT_EQ(run("shaders reflect eevee_lit --variant USE_SHADOW_CUBE").status, 1) << "no such variant";
   EXPECT_EQ(run("shaders reflect eevee_paint").status, 1);
+}
+
+/** The entry \a name of a list in spirv-cross's reflection, with its members by name. */
+nlohmann::json entry_of(const nlohmann::json &list, const std::string &name)
+{
+  const auto found = std::ranges::find_if(list, [&](const nlohmann::json &entry) { return entry["name"] == name; });
+  return found == list.end() ? nlohmann::json() : *found;
+}
+
+TEST_F(ShadersTest, ReflectOfFilesAgreesWithSpirvCross)
+{
+  write("m.vert",
+        "#version 450\n"
+        "layout(location = 0) in vec3 position; layout(location = 3) in uvec4 joints;\n"
+        "struct Bone { mat3x4 m; vec3 scale; };\n"
+        "layout(set = 1, binding = 2) uniform Pose { Bone bones[2]; float weights[3]; layout(row_major) mat4x3 r; } "
+        "pose;\n"
+        "layout(push_constant) uniform Draw { vec4 color; int index; } draw;\n"
+        "layout(location = 1) out vec3 normal;\n"
+        "void main() { normal = pose.bones[joints.x].scale * pose.weights[1] * pose.r[0].x * draw.color.x;\n"
+        "  gl_Position = vec4(position, draw.index); }\n");
+  write("m.frag",
+        "#version 450\n"
+        "layout(location = 1) in vec3 normal; layout(location = 0) out vec4 color;\n"
+        "layout(set = 0, binding = 5) uniform sampler2DArrayShadow shadows[4];\n"
+        "layout(set = 0, binding = 6, rgba8ui) uniform readonly uimage3D cells;\n"
+        "layout(set = 2, binding = 0, std430) buffer Hits { uint count; vec2 places[]; } hits;\n"
+        "void main() { color = vec4(normal, texture(shadows[1], vec4(normal, 0))) * hits.places[hits.count].x\n"
+        "  * imageLoad(cells, ivec3(normal)).x; }\n");
+  ASSERT_EQ(run("shaders check m.vert m.frag --target vulkan1.2 -o spv").status, 0);
+  const Finished finished = run("shaders reflect m.vert m.frag --format json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const nlohmann::json program = nlohmann::json::parse(finished.out).at(0);
+  EXPECT_EQ(program["stages"], nlohmann::json({"vertex", "fragment"}));
+  int compared = 0;
+  for (const char *file : {"m.vert", "m.frag"}) {
+    const Finished cross = run(fmt::format("spv/{}.spv --reflect", file), "spirv-cross");
+    ASSERT_EQ(cross.status, 0) << cross.err << "\ninstall spirv-cross (scripts/setup tests)";
+    const nlohmann::json other = nlohmann::json::parse(cross.out);
+    const auto expect_list = [&](const char *list, const char *kind) {
+      for (const nlohmann::json &entry : other.value(list, nlohmann::json::array())) {
+        // spirv-cross names push constants as the variable, and others as the block.
+        const nlohmann::json ours =
+            entry_of(program["bindings"], entry["name"] == "draw" ? nlohmann::json("Draw") : entry["name"]);
+        ASSERT_FALSE(ours.is_null()) << entry;
+        EXPECT_EQ(ours["kind"], kind) << entry;
+        EXPECT_EQ(ours["set"], entry.value("set", 0)) << entry;
+        EXPECT_EQ(ours["slot"], entry.value("binding", -1)) << entry;
+        EXPECT_EQ(ours["size"], entry.value("block_size", kind == std::string("push constants") ? 20 : 0)) << entry;
+        compared++;
+        if (!other["types"].contains(entry["type"].get<std::string>())) {
+          continue;
+        }
+        for (const nlohmann::json &member : other["types"][entry["type"].get<std::string>()]["members"]) {
+          if (!member["type"].get<std::string>().starts_with("_")) {
+            EXPECT_EQ(entry_of(ours["members"], member["name"])["offset"], member["offset"]) << member;
+            compared++;
+          }
+        }
+      }
+    };
+    expect_list("ubos", "uniform");
+    expect_list("ssbos", "storage");
+    expect_list("push_constants", "push constants");
+    expect_list("textures", "texture");
+    expect_list("images", "image");
+  }
+  EXPECT_GE(compared, 11);
+  EXPECT_EQ(entry_of(program["bindings"], "shadows")["type"], "sampler2DArrayShadow[4]");
+  EXPECT_EQ(entry_of(program["bindings"], "cells")["type"], "uimage3D");
+  const nlohmann::json pose = entry_of(program["bindings"], "Pose")["members"];
+  // By std140: a bone is three columns of vec4 and a vec3 in a row of 16 bytes.
+  EXPECT_EQ(entry_of(pose, "bones[0].scale"),
+            nlohmann::json({{"name", "bones[0].scale"}, {"type", "vec3"}, {"offset", 48}, {"size", 12}}));
+  EXPECT_EQ(entry_of(pose, "weights")["offset"], 128);
+  EXPECT_EQ(entry_of(program["inputs"], "joints"),
+            nlohmann::json({{"name", "joints"}, {"type", "uvec4"}, {"location", 3}}));
+}
+
+TEST_F(ShadersTest, ReflectOfFilesReadsOpenGlAndNamesErrors)
+{
+  write("old.frag",
+        "#version 330\nuniform sampler2D image; in vec2 uv; out vec4 color;\n"
+        "void main() { color = texture(image, uv); }\n");
+  const Finished old = run("shaders reflect old.frag");
+  EXPECT_EQ(old.status, 0) << old.err;
+  EXPECT_NE(old.out.find("texture sampler2D 'image', set 0, slot"), std::string::npos) << old.out;
+  write("bad.frag", "#version 450\nvoid main()\n{\n  x = 1;\n}\n");
+  const Finished bad = run("shaders reflect bad.frag");
+  EXPECT_EQ(bad.status, 1);
+  EXPECT_NE(bad.err.find("bad.frag:4: "), std::string::npos) << bad.err;
+  write("es.frag", "#version 100\nvoid main() { gl_FragColor = vec4(1.0); }\n");
+  const Finished es = run("shaders reflect es.frag");
+  EXPECT_EQ(es.status, 1);
+  EXPECT_NE(es.err.find("no SPIR-V"), std::string::npos) << es.err;
+  EXPECT_EQ(run("shaders reflect old.frag --variant USE_LIGHT").status, 2);
+  EXPECT_EQ(run("shaders reflect eevee_lit -D N=1").status, 2);
 }
 
 const std::string VERSION = "#version 450 core\n";

@@ -170,9 +170,9 @@ TEST(Declarations, OfStorageBlocksAndTextures)
                         "layout(binding = 4) uniform sampler2DShadow c[3];\n"
                         "void main() { block.items[0].x = texture(a, vec2(0.0)); }\n",
                         "buffer Block Block line 4 set 0 slot 0, count:5, Item::items[0].x:3, Item::items[0].y:3\n"
-                        "texture sampler a line 8 set 0 slot 1\n"
-                        "texture sampler b line 9 unused set 0 slot 2 image\n"
-                        "texture sampler[3] c line 10 unused set 0 slot 4\n",
+                        "texture image2D b line 9 unused set 0 slot 2 image\n"
+                        "texture sampler2D a line 8 set 0 slot 1\n"
+                        "texture sampler2DShadow[3] c line 10 unused set 0 slot 4\n",
                         target);
   }
 }

@@ -379,14 +379,14 @@ TEST(CheckShader, ManyThreadsFindTheSame)
   }
 }
 
-TEST(StageVariables, AreInputsOfTheFirstAndOutputsOfTheLastStage)
+TEST(ProgramInterface, HasInputsOfTheFirstAndOutputsOfTheLastStage)
 {
   ShaderTexts texts;
   texts.texts["vert"] = VERSION +
                         "layout(location = 4) in ivec2 b; layout(location = 0) in mat4 a;\n"
                         "layout(location = 0) out vec2 uv; void main() { gl_Position = a[b.x]; uv = vec2(0.0); }\n";
   texts.texts["frag"] = VERSION + COLOR + "layout(location = 0) in vec2 uv; void main() { color = uv.xyxy; }\n";
-  const StageVariables variables = stage_variables({"test", "vert", "", "frag", {}}, texts.files());
+  const ProgramInterface variables = program_interface({"test", "vert", "", "frag", {}}, texts.files());
   ASSERT_EQ(variables.inputs.size(), 2U);
   EXPECT_EQ(variables.inputs[0].type, "mat4x4");
   EXPECT_EQ(variables.inputs[1].name, "b");

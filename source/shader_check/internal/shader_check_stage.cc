@@ -7,6 +7,7 @@
 #include <glslang/SPIRV/spirv.hpp>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -16,7 +17,7 @@ std::string type_name(const DeclaredType &type, bool is_arrayed)
 {
   std::string name = type.name;
   for (std::size_t i = is_arrayed ? 1 : 0; i < type.array_sizes.size(); i++) {
-    name += fmt::format("[{}]", type.array_sizes[i]);
+    name += type.array_sizes[i] == 0 ? "[]" : fmt::format("[{}]", type.array_sizes[i]);
   }
   return name;
 }
@@ -226,6 +227,33 @@ class SpirvReader {
       default: return {};
     }
   }
+  /** The name of a sampler, texture, image or reference. */
+  std::string opaque_name(std::uint32_t id) const
+  {
+    const SpirvType &type = module_.type(id);
+    if (type.op == spv::OpTypePointer) {
+      return module_.name(type.operands[1]);
+    }
+    if (type.op == spv::OpTypeAccelerationStructureKHR) {
+      return "accelerationStructureEXT";
+    }
+    const bool is_combined = type.op == spv::OpTypeSampledImage;
+    const SpirvType &image = is_combined ? module_.type(type.operands[0]) : type;
+    if (image.op != spv::OpTypeImage) {
+      return "sampler";
+    }
+    // Words of OpTypeImage: sampled type, dimension, depth, arrayed, multisampled, whether it is sampled: 2 for not.
+    static constexpr std::array<std::string_view, 7> dimensions = {"1D", "2D", "3D", "Cube", "2DRect", "Buffer", ""};
+    const bool is_input = image.operands[1] == spv::DimSubpassData;
+    return fmt::format("{}{}{}{}{}{}", scalar_name(image.operands[0]).second,
+                       is_input                 ? "subpassInput"
+                       : is_combined            ? "sampler"
+                       : image.operands[5] == 2 ? "image"
+                                                : "texture",
+                       image.operands[1] < dimensions.size() ? dimensions[image.operands[1]] : "",
+                       image.operands[4] != 0 ? "MS" : "", image.operands[3] != 0 ? "Array" : "",
+                       is_combined && image.operands[2] == 1 ? "Shadow" : "");
+  }
   DeclaredType declared_type(std::uint32_t id) const
   {
     DeclaredType result;
@@ -249,7 +277,7 @@ class SpirvReader {
       result.name = fmt::format("{}vec{}", start, result.vector_size);
     }
     else {
-      result.name = scalar.empty() ? "sampler" : scalar;
+      result.name = scalar.empty() ? opaque_name(id) : scalar;
     }
     return result;
   }
@@ -304,21 +332,26 @@ class SpirvReader {
     }
   }
 
+  /** \a first_byte: where the struct \a id begins in \a block. */
   void add_members(std::uint32_t id, const std::string &prefix, const std::string &structure, SourcePosition position,
-                   Declaration &block)
+                   std::uint32_t first_byte, Declaration &block)
   {
     const SpirvType &type = module_.type(id);
     for (std::uint32_t i = 0; i < type.operands.size(); i++) {
       const SpirvType::Member &member = member_of(type, i);
       const std::string name = prefix + member.name;
+      const std::uint32_t offset_bytes =
+          first_byte + std::uint32_t(value_or(find(member.decorations, spv::DecorationOffset), 0));
       const std::uint32_t element = element_of(type.operands[i]);
       if (module_.type(element).op == spv::OpTypeStruct) {
         const std::string inner = module_.name(element);
         add_members(element, name + (element == type.operands[i] ? "." : "[0]."), inner,
-                    lines_.find_declaration(inner, "struct"), block);
+                    lines_.find_declaration(inner, "struct"), offset_bytes, block);
         continue;
       }
-      block.members.push_back({name, structure, lines_.find_member(position, member.name)});
+      block.members.push_back({name, structure, lines_.find_member(position, member.name),
+                               declared_type(type.operands[i]), offset_bytes,
+                               size_of(type.operands[i], member.decorations)});
       const bool has_rows = value_or(find(type.operands[i], spv::DecorationArrayStride), 0) == 16;
       check_array(declared_type(type.operands[i]), has_rows, block.members.back(), facts.findings);
     }
@@ -422,7 +455,7 @@ class SpirvReader {
     declaration.is_push_constant =
         variable.storage == spv::StorageClassPushConstant || declaration.name == gpu::push_constant_block_name;
     declaration.size_bytes = size_of(element, {});
-    add_members(element, "", "", declaration.position, declaration);
+    add_members(element, "", "", declaration.position, 0, declaration);
     (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
   }
 
@@ -430,7 +463,6 @@ class SpirvReader {
   {
     declaration.type = declared_type(type);
     const SpirvType &element = module_.type(element_of(type));
-    // Words of OpTypeImage: sampled type, dimension, depth, arrayed, multisampled, whether it is sampled: 2 for not.
     declaration.is_image =
         element.op == spv::OpTypeImage && element.operands[5] == 2 && element.operands[1] != spv::DimSubpassData;
     const bool is_atomic = element.op == spv::OpTypeInt && declaration.slot >= 0;

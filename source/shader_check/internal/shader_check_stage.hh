@@ -40,6 +40,10 @@ struct BlockMember {
   /** Name of the struct that declares it; empty for the block itself. */
   std::string structure;
   SourcePosition position;
+  /** The type and the place in the block. Of read_spirv() alone. */
+  DeclaredType type{};
+  std::uint32_t offset_bytes = 0;
+  std::uint32_t size_bytes = 0;
 };
 
 /** A block, texture, stage input or stage output. */

@@ -45,7 +45,7 @@ DeclaredType declared_type(const glslang::TType &type)
     result.name = text_of(type.getTypeName());
   }
   else if (found == names.end()) {
-    result.name = "sampler";
+    result.name = type.getBasicType() == glslang::EbtSampler ? text_of(type.getSampler().getString()) : "sampler";
   }
   else {
     result.scalar = found->second.first;
