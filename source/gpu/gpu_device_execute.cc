@@ -140,7 +140,7 @@ void Device::execute(const Operation::CreateShader &create, Packet *packet)
       throw;
     }
     packet->feedback_.failed_shaders.push_back({create.id, error.what()});
-    make_shader({create.id, create.desc, create.stand_in, create.samplers, {}});
+    make_shader({create.id, create.desc, create.stand_in, create.samplers, create.constants, {}});
   }
 }
 

@@ -122,6 +122,8 @@ struct Operation {
     std::vector<ShaderSource> stages;
     /** Names of the samplers that the shader declares. */
     std::vector<std::string> samplers;
+    /** Values that the backend sets. Empty without Limits::has_specialization. */
+    std::vector<StageConstant> constants;
     /** Compiled if `stages` do not compile; empty: that is an error. */
     std::vector<ShaderSource> stand_in;
   };

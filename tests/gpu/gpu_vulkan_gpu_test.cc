@@ -129,6 +129,28 @@ void main()
   EXPECT_EQ(read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(24)));
 }
 
+TEST_F(VulkanGpu, ATextIsCompiledOnceForAllValuesOfItsConstants)
+{
+  std::string folder = (std::filesystem::temp_directory_path() / "gnomon_constants.XXXXXX").string();
+  ASSERT_TRUE(mkdtemp(folder.data()));
+  int compiled_count = 0;
+  const auto compile = [&](std::string_view name, const std::vector<ShaderSource> &stages) {
+    compiled_count++;
+    return shader_check::compile_spirv(name, stages);
+  };
+  {
+    const auto other = create_vulkan_device({.compile_spirv = compile, .shader_cache_folder = folder});
+    for (const std::int32_t value : {0, 1, 2}) {
+      test::make_shader(*other, "constants", test::CLIP_SPACE_VERT,
+                        std::string("SPECIALIZATION_CONSTANT(0) const int taps = 4;") + test::COLOR_FRAG, "",
+                        {{"taps", value}});
+    }
+    EXPECT_EQ(other->counters().shaders_from_cache, 2U);
+  }
+  EXPECT_EQ(compiled_count, 1);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(VulkanDevice, WithoutACompilerOfShadersIsAnError)
 {
   test::expect_contains(test::error_of([] { static_cast<void>(create_vulkan_device({})); }), "no compiler of shaders");

@@ -278,7 +278,7 @@ void VulkanDevice::shader_create(const Operation::CreateShader &create, std::vec
     stages = compile_(create.desc.name, create.stages);
     compiled = packed(stages);
   }
-  programs_.insert(create.id, std::make_shared<VulkanProgram>(*context_, create.desc.name, stages));
+  programs_.insert(create.id, std::make_shared<VulkanProgram>(*context_, create.desc.name, stages, create.constants));
   check_made(ResourceKind::Shader, create.id, fmt::format("shader '{}'", create.desc.name));
 }
 
