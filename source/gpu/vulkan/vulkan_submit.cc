@@ -268,6 +268,9 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
       float(area.offset.x), float(area.offset.y), float(area.extent.width), float(area.extent.height), 0.0F, 1.0F};
   context_->vk.vkCmdSetViewport(commands, 0, 1, &viewport);
   context_->vk.vkCmdSetScissor(commands, 0, 1, &scissor);
+  const DepthBias &bias = actions.depth_bias;
+  context_->vk.vkCmdSetDepthBiasEnable(commands, bias != DepthBias() ? VK_TRUE : VK_FALSE);
+  context_->vk.vkCmdSetDepthBias(commands, bias.constant, 0.0F, bias.slope);
   list_.has_new_bindings = true;
 }
 
