@@ -145,6 +145,26 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
           size_px};
 }
 
+Framebuffer Device::create_framebuffer(const std::string &name, const HostImage &image)
+{
+  const auto refuse = [&](std::string_view why) { throw Error("framebuffer '{}' of the host's image: {}", name, why); };
+  const glm::ivec2 size = image.size_px;
+  if (!image.image) {
+    refuse("there is no image");
+  }
+  if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > limits_.texture_size_max) {
+    refuse(fmt::format("it is {}x{}, but this device supports 1 to {}", size.x, size.y, limits_.texture_size_max));
+  }
+  if (image.samples < 1 || (image.samples > 1 && image.rows == RowOrder::TopFirst)) {
+    refuse(fmt::format("{} samples with the top row first", image.samples));
+  }
+  return {make(ResourceKind::Framebuffer, {name, FramebufferInfo{.attachments = {}, .size_px = size}}, "of the host", 0,
+               [&](ResourceId id) {
+                 return Operation::CreateHostFramebuffer{id, name, image};
+               }),
+          size};
+}
+
 Buffer Device::create_buffer(const BufferDesc &desc)
 {
   const std::size_t max =

@@ -213,7 +213,11 @@ void main()
     list.bind_texture(16, texels.id(), sampler.id());
     test::append_draw(list, full);
     list.end_pass();
+    const TimerQuery timer = device->create_timer_query("thing");
+    device->time_begin(timer);
     device->submit(list);
+    device->time_end(timer);
+    static_cast<void>(device->take_seconds(timer));
     return read_as<glm::vec4>(*device, picture);
   }
   /** The error of drawn() while the function \a member of the driver fails with \a result. */
@@ -265,6 +269,8 @@ TEST_F(VulkanFailure, AFailedCallIsAnErrorThatNamesTheThingAndTheDeviceRemainsUs
   EXPECT_EQ(drawn(3), expected);
 }
 
+/** By each function that may report it: at the start and the end of recording, at submission, while waiting, at reads.
+ */
 TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
 {
   const auto lose = [&](auto member) {
@@ -276,7 +282,9 @@ TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
   lose(&VolkDeviceTable::vkQueueSubmit2);
   lose(&VolkDeviceTable::vkWaitSemaphores);
   lose(&VolkDeviceTable::vkGetSemaphoreCounterValue);
+  lose(&VolkDeviceTable::vkBeginCommandBuffer);
   lose(&VolkDeviceTable::vkEndCommandBuffer);
+  lose(&VolkDeviceTable::vkGetQueryPoolResults);
 }
 
 /** Barriers, of which one changes layouts, but orders nothing. */

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_vulkan_host.hh"
+
 #include <volk.h>
 
 #include <functional>
@@ -11,15 +13,32 @@
 
 namespace gnomon::gpu {
 
-/** An instance with a device that has one queue, and the messages of the validation layers. */
+/** Functions of one instance. volk has those of one instance for the whole process. */
+struct VulkanInstanceTable {
+  PFN_vkDestroyInstance vkDestroyInstance = nullptr;
+  PFN_vkEnumeratePhysicalDevices vkEnumeratePhysicalDevices = nullptr;
+  PFN_vkEnumerateDeviceExtensionProperties vkEnumerateDeviceExtensionProperties = nullptr;
+  PFN_vkGetPhysicalDeviceProperties2 vkGetPhysicalDeviceProperties2 = nullptr;
+  PFN_vkGetPhysicalDeviceFeatures2 vkGetPhysicalDeviceFeatures2 = nullptr;
+  PFN_vkGetPhysicalDeviceQueueFamilyProperties vkGetPhysicalDeviceQueueFamilyProperties = nullptr;
+  PFN_vkGetPhysicalDeviceMemoryProperties vkGetPhysicalDeviceMemoryProperties = nullptr;
+  PFN_vkGetPhysicalDeviceFormatProperties vkGetPhysicalDeviceFormatProperties = nullptr;
+  PFN_vkCreateDevice vkCreateDevice = nullptr;
+  PFN_vkGetDeviceProcAddr vkGetDeviceProcAddr = nullptr;
+};
+
+/** A device that has one queue, its own or the host's, and the messages of the validation layers. */
 class VulkanContext {
  public:
   /** \a sink: receives messages of the validation layers about the end of the device. \throws Error */
   VulkanContext(bool is_debug, std::function<void(std::string_view message)> sink);
+  /** The device of a host. \throws Error that names what it lacks */
+  explicit VulkanContext(const VulkanHost &host);
   ~VulkanContext();
   VulkanContext(const VulkanContext &) = delete;
   VulkanContext &operator=(const VulkanContext &) = delete;
 
+  VulkanInstanceTable instance{};
   /** The functions of the device. */
   VolkDeviceTable vk{};
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -36,6 +55,8 @@ class VulkanContext {
   /** Version, names of the device and the driver. */
   std::string description;
 
+  /** Uses the queue. */
+  [[nodiscard]] VkResult submit(const VkSubmitInfo2 &info);
   /** \throws Error that begins with \a what if \a result is a failure: TransientError, DeviceLost */
   void check(VkResult result, std::string_view what);
   /** For functions that do not throw: check_lost() throws afterwards if \a result says that the device is lost. */
@@ -62,17 +83,27 @@ class VulkanContext {
                                             const VkDebugUtilsMessengerCallbackDataEXT *data, void *user);
   void create_instance(bool is_debug);
   void create_device();
+  /** Sets what follows from the physical device and from the features that are enabled. */
+  void describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output);
+  /** Loads the functions of the instance, and of the device. */
+  void load_instance();
+  void load_device();
   /** A function of an extension, which volk would have for the last instance only. */
   template <typename Function>
   [[nodiscard]] Function instance_function(const char *name) const
   {
-    return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance_, name));
+    return reinterpret_cast<Function>(loader_(instance_, name));
   }
   void label_object(VkObjectType type, std::uint64_t handle, const std::string &name);
   void destroy();
 
   std::function<void(std::string_view message)> sink_;
+  PFN_vkGetInstanceProcAddr loader_ = nullptr;
   VkInstance instance_ = VK_NULL_HANDLE;
+  /** The instance and the device are the host's. */
+  bool is_host_ = false;
+  std::function<void()> lock_queue_;
+  std::function<void()> unlock_queue_;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   /** nullptr: the device has no validation layers. */
   PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;

@@ -217,7 +217,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   rasterization.lineWidth = 1.0F;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  samples.rasterizationSamples = key.samples;
   VkPipelineDepthStencilStateCreateInfo depth{};
   depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
   const auto color_count = std::uint32_t(std::ranges::find(key.colors, VK_FORMAT_UNDEFINED) - key.colors.begin());

@@ -21,6 +21,7 @@ struct PipelineKey {
   /** VK_FORMAT_UNDEFINED: there is no such attachment. */
   std::array<VkFormat, color_count_max> colors{};
   VkFormat depth = VK_FORMAT_UNDEFINED;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   /** Draws take vertices from no buffer, or instances from a buffer of objects. */
   bool is_procedural = false;
   bool has_objects = false;
