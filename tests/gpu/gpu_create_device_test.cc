@@ -20,6 +20,15 @@ TEST(CreateDevice, NullNeedsNoDriver)
   test::expect_contains(create_device({.backend = Backend::Null})->description(), "null");
 }
 
+TEST(CreateDevice, TheBackendIsTheHosts)
+{
+  for (const Backend backend : {Backend::Vulkan, Backend::Null}) {
+    test::expect_contains(
+        test::error_of([&] { static_cast<void>(create_device({.backend = backend, .host = GlHost{}})); }),
+        "the host's is 'gl'");
+  }
+}
+
 TEST(CreateDevice, DriversThatDrawWrongPicturesAreKnown)
 {
   EXPECT_TRUE(draws_wrong("OpenGL 4.5.0 NVIDIA 580.159.04, NVIDIA H200/PCIe/SSE2 (EGL device 0)"));

@@ -222,7 +222,7 @@ void main()
   }
   /** The error of drawn() while the function \a member of the driver fails with \a result. */
   template <typename Function>
-  std::string error_if(Function VolkDeviceTable::*member, VkResult result)
+  std::string error_if(Function VulkanDeviceTable::*member, VkResult result)
   {
     const Function real = std::exchange(context->vk.*member, &Failing<Function>::call);
     Failing<Function>::result = result;
@@ -246,16 +246,16 @@ TEST_F(VulkanFailure, AFailedCallIsAnErrorThatNamesTheThingAndTheDeviceRemainsUs
       EXPECT_EQ(drawn(3), expected);
     }
   };
-  fail(&VolkDeviceTable::vkCreateImage, "'thing'");
-  fail(&VolkDeviceTable::vkBindImageMemory, "'thing'");
-  fail(&VolkDeviceTable::vkCreateImageView, "'thing'");
-  fail(&VolkDeviceTable::vkCreateBufferView, "'thing'");
-  fail(&VolkDeviceTable::vkCreateSampler, "'thing'");
-  fail(&VolkDeviceTable::vkCreateShaderModule, "'thing'");
-  fail(&VolkDeviceTable::vkCreateDescriptorSetLayout, "'thing'");
-  fail(&VolkDeviceTable::vkCreatePipelineLayout, "'thing'");
-  fail(&VolkDeviceTable::vkCreateGraphicsPipelines, "'thing'");
-  fail(&VolkDeviceTable::vkAllocateDescriptorSets, "bindings");
+  fail(&VulkanDeviceTable::vkCreateImage, "'thing'");
+  fail(&VulkanDeviceTable::vkBindImageMemory, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateImageView, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateBufferView, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateSampler, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateShaderModule, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateDescriptorSetLayout, "'thing'");
+  fail(&VulkanDeviceTable::vkCreatePipelineLayout, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateGraphicsPipelines, "'thing'");
+  fail(&VulkanDeviceTable::vkAllocateDescriptorSets, "bindings");
   EXPECT_TRUE(device->live_resources().empty());
   // New memory, which is allocated for what does not fit into a block.
   const auto real = std::exchange(context->vk.vkAllocateMemory, &Failing<PFN_vkAllocateMemory>::call);
@@ -279,12 +279,12 @@ TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
     make();
     EXPECT_EQ(drawn(3), std::vector<glm::vec4>(4, glm::vec4(3)));
   };
-  lose(&VolkDeviceTable::vkQueueSubmit2);
-  lose(&VolkDeviceTable::vkWaitSemaphores);
-  lose(&VolkDeviceTable::vkGetSemaphoreCounterValue);
-  lose(&VolkDeviceTable::vkBeginCommandBuffer);
-  lose(&VolkDeviceTable::vkEndCommandBuffer);
-  lose(&VolkDeviceTable::vkGetQueryPoolResults);
+  lose(&VulkanDeviceTable::vkQueueSubmit2);
+  lose(&VulkanDeviceTable::vkWaitSemaphores);
+  lose(&VulkanDeviceTable::vkGetSemaphoreCounterValue);
+  lose(&VulkanDeviceTable::vkBeginCommandBuffer);
+  lose(&VulkanDeviceTable::vkEndCommandBuffer);
+  lose(&VulkanDeviceTable::vkGetQueryPoolResults);
 }
 
 /** Barriers, of which one changes layouts, but orders nothing. */
@@ -298,7 +298,7 @@ struct WeakBarrier {
   /** The weak one is the first of a submission. */
   static inline bool is_weak_first = false;
 
-  static void begin(VolkDeviceTable &vk, int weak_one)
+  static void begin(VulkanDeviceTable &vk, int weak_one)
   {
     real = std::exchange(vk.vkCmdPipelineBarrier2, &record);
     real_begin = std::exchange(vk.vkBeginCommandBuffer, &begin_commands);

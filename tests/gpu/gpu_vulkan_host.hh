@@ -2,8 +2,7 @@
 #pragma once
 
 #include "gpu_vulkan_host.hh"
-
-#include <volk.h>
+#include "vulkan/vulkan_functions.hh"
 
 #include <dlfcn.h>
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define VOLK_IMPLEMENTATION
 #include "vulkan_context.hh"
 
 #include "gpu_error.hh"
@@ -7,10 +6,11 @@
 
 #include <fmt/ranges.h>
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstring>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 namespace gnomon::gpu {
@@ -182,16 +182,16 @@ int rank_of(VkPhysicalDeviceType type)
   }
 }
 
-/** Loads what volk has of the loader. Its functions are global, and serve all instances. */
-void load_loader()
+/** Of the library of Vulkan, which stays loaded. */
+PFN_vkGetInstanceProcAddr load_loader()
 {
-  if (!vkCreateInstance && volkInitialize() != VK_SUCCESS) {
+  void *library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+  void *loader = library ? dlsym(library, "vkGetInstanceProcAddr") : nullptr;
+  if (!loader) {
     throw TransientError("Vulkan: there is no loader (libvulkan.so.1)");
   }
+  return reinterpret_cast<PFN_vkGetInstanceProcAddr>(loader);
 }
-
-/** Held while functions of volk are loaded or set. */
-std::mutex loader_mutex;
 
 }  // namespace
 
@@ -255,36 +255,22 @@ VulkanContext::VulkanContext(const VulkanHost &host)
 
 void VulkanContext::load_instance()
 {
-  const auto load = [&]<typename Function>(Function &function, const char *name) {
-    function = instance_function<Function>(name);
-    if (!function) {
-      throw Error("Vulkan: the instance has no {}: is it made for Vulkan 1.3?", name);
-    }
-  };
-  load(instance.vkDestroyInstance, "vkDestroyInstance");
-  load(instance.vkEnumeratePhysicalDevices, "vkEnumeratePhysicalDevices");
-  load(instance.vkEnumerateDeviceExtensionProperties, "vkEnumerateDeviceExtensionProperties");
-  load(instance.vkGetPhysicalDeviceProperties2, "vkGetPhysicalDeviceProperties2");
-  load(instance.vkGetPhysicalDeviceFeatures2, "vkGetPhysicalDeviceFeatures2");
-  load(instance.vkGetPhysicalDeviceQueueFamilyProperties, "vkGetPhysicalDeviceQueueFamilyProperties");
-  load(instance.vkGetPhysicalDeviceMemoryProperties, "vkGetPhysicalDeviceMemoryProperties");
-  load(instance.vkGetPhysicalDeviceFormatProperties, "vkGetPhysicalDeviceFormatProperties");
-  load(instance.vkCreateDevice, "vkCreateDevice");
-  load(instance.vkGetDeviceProcAddr, "vkGetDeviceProcAddr");
+#define GNOMON_VULKAN_LOAD(NAME)                                                      \
+  if (!(instance.NAME = instance_function<PFN_##NAME>(#NAME))) {                      \
+    throw Error("Vulkan: the instance has no {}: is it made for Vulkan 1.3?", #NAME); \
+  }
+  GNOMON_VULKAN_INSTANCE_FUNCTIONS(GNOMON_VULKAN_LOAD)
+#undef GNOMON_VULKAN_LOAD
 }
 
 void VulkanContext::load_device()
 {
-  // volk looks the functions up by its global function, which may be that of another loader, or none.
-  const std::scoped_lock lock(loader_mutex);
-  const auto global = std::exchange(vkGetDeviceProcAddr, instance.vkGetDeviceProcAddr);
-  volkLoadDeviceTable(&vk, device);
-  vkGetDeviceProcAddr = global;
-  if (!vk.vkQueueSubmit2 || !vk.vkCmdBeginRendering || !vk.vkCmdSetDepthBiasEnable) {
-    throw Error(
-        "Vulkan: the device has no functions of Vulkan 1.3: is the "
-        "instance made for it?");
+#define GNOMON_VULKAN_LOAD(NAME)                                                                \
+  if (!(vk.NAME = reinterpret_cast<PFN_##NAME>(instance.vkGetDeviceProcAddr(device, #NAME)))) { \
+    throw Error("Vulkan: the device has no {}: is the instance made for Vulkan 1.3?", #NAME);   \
   }
+  GNOMON_VULKAN_DEVICE_FUNCTIONS(GNOMON_VULKAN_LOAD)
+#undef GNOMON_VULKAN_LOAD
 }
 
 VkResult VulkanContext::submit(const VkSubmitInfo2 &info)
@@ -304,7 +290,8 @@ void VulkanContext::destroy()
   if (is_host_) {
     return;
   }
-  if (device != VK_NULL_HANDLE) {
+  // Without the function, the device or the instance could not be loaded.
+  if (vk.vkDestroyDevice) {
     vk.vkDestroyDevice(device, nullptr);
   }
   for (const std::string &message : take_messages()) {
@@ -314,16 +301,14 @@ void VulkanContext::destroy()
     instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_,
                                                                                               nullptr);
   }
-  if (instance_ != VK_NULL_HANDLE) {
-    instance_function<PFN_vkDestroyInstance>("vkDestroyInstance")(instance_, nullptr);
+  if (instance.vkDestroyInstance) {
+    instance.vkDestroyInstance(instance_, nullptr);
   }
 }
 
 void VulkanContext::create_instance(bool is_debug)
 {
-  const std::scoped_lock lock(loader_mutex);
-  load_loader();
-  loader_ = vkGetInstanceProcAddr;
+  loader_ = load_loader();
   const VkApplicationInfo application{
       VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 0, "gnomon", 0, api_version};
   VkInstanceCreateInfo info{};
@@ -343,7 +328,7 @@ void VulkanContext::create_instance(bool is_debug)
     info.enabledExtensionCount = std::uint32_t(extensions.size());
     info.ppEnabledExtensionNames = extensions.data();
   }
-  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  const VkResult result = instance_function<PFN_vkCreateInstance>("vkCreateInstance")(&info, nullptr, &instance_);
   if (result == VK_ERROR_LAYER_NOT_PRESENT) {
     throw Error("Vulkan: the validation layers are not installed ({})", validation_layer);
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gpu_vulkan_host.hh"
+#include "vulkan_functions.hh"
 
-#include <volk.h>
+#include "gpu_vulkan_host.hh"
 
 #include <functional>
 #include <mutex>
@@ -12,20 +12,6 @@
 #include <vector>
 
 namespace gnomon::gpu {
-
-/** Functions of one instance. volk has those of one instance for the whole process. */
-struct VulkanInstanceTable {
-  PFN_vkDestroyInstance vkDestroyInstance = nullptr;
-  PFN_vkEnumeratePhysicalDevices vkEnumeratePhysicalDevices = nullptr;
-  PFN_vkEnumerateDeviceExtensionProperties vkEnumerateDeviceExtensionProperties = nullptr;
-  PFN_vkGetPhysicalDeviceProperties2 vkGetPhysicalDeviceProperties2 = nullptr;
-  PFN_vkGetPhysicalDeviceFeatures2 vkGetPhysicalDeviceFeatures2 = nullptr;
-  PFN_vkGetPhysicalDeviceQueueFamilyProperties vkGetPhysicalDeviceQueueFamilyProperties = nullptr;
-  PFN_vkGetPhysicalDeviceMemoryProperties vkGetPhysicalDeviceMemoryProperties = nullptr;
-  PFN_vkGetPhysicalDeviceFormatProperties vkGetPhysicalDeviceFormatProperties = nullptr;
-  PFN_vkCreateDevice vkCreateDevice = nullptr;
-  PFN_vkGetDeviceProcAddr vkGetDeviceProcAddr = nullptr;
-};
 
 /** A device that has one queue, its own or the host's, and the messages of the validation layers. */
 class VulkanContext {
@@ -40,7 +26,7 @@ class VulkanContext {
 
   VulkanInstanceTable instance{};
   /** The functions of the device. */
-  VolkDeviceTable vk{};
+  VulkanDeviceTable vk{};
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
@@ -85,10 +71,10 @@ class VulkanContext {
   void create_device();
   /** Sets what follows from the physical device and from the features that are enabled. */
   void describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output);
-  /** Loads the functions of the instance, and of the device. */
+  /** Load the functions of the instance, and of the device. \throws Error that names the first one that is missing */
   void load_instance();
   void load_device();
-  /** A function of an extension, which volk would have for the last instance only. */
+  /** A function of the instance; nullptr: it has none of this name. */
   template <typename Function>
   [[nodiscard]] Function instance_function(const char *name) const
   {
