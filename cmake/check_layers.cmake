@@ -101,7 +101,7 @@ foreach(FILE ${FILES})
   if(FILE MATCHES "^(source/gpu/vulkan|examples|tests)/")
     set(VULKAN_HEADER "^$")
   else()
-    set(VULKAN_HEADER "^(vulkan/vulkan.*\\.h|volk\\.h)$")
+    set(VULKAN_HEADER "^vulkan/vulkan.*\\.h$")
   endif()
 
   file(STRINGS ${FOLDER}/${FILE} INCLUDES REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")

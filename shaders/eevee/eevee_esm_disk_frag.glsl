@@ -7,11 +7,7 @@
 #  define ESM_TAPS EVSM_TAPS
 #endif
 
-#ifdef VULKAN
-layout(constant_id = 0) const int tap_count = ESM_TAPS;
-#else
-const int tap_count = ESM_TAPS;
-#endif
+SPECIALIZATION_CONSTANT(0) const int tap_count = ESM_TAPS;
 
 #ifdef EVSM_TAPS
 layout(location = 0) out vec2 stored;

@@ -77,7 +77,7 @@
 #define PUSH_CONSTANT_LAYOUT layout(std140, binding = PUSH_CONSTANT_SLOT)
 #endif
 
-/** Prefix of `const int NAME = VALUE;`. The value is set at pipeline creation if the API supports it, otherwise by defines. */
+/** Prefix of a line `const TYPE NAME = DEFAULT;`, TYPE `int` or `bool`. \see gpu::ShaderDesc::constants */
 #ifdef VULKAN
 #define SPECIALIZATION_CONSTANT(ID) layout(constant_id = ID)
 #else

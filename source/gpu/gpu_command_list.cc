@@ -123,6 +123,12 @@ static std::string_view to_string(StoreAction action)
   return action == StoreAction::Store ? "store" : "dont_care";
 }
 
+/** Returns text such as " bias -1, -2", the constant and the slope, or an empty string for none. */
+static std::string to_string(const DepthBias &bias)
+{
+  return bias == DepthBias() ? "" : fmt::format(" bias {}, {}", bias.constant, bias.slope);
+}
+
 /** Returns text such as " viewport 4x3 at 1,2", or an empty string for the whole framebuffer. */
 static std::string to_string(std::string_view what, const Rectangle &rectangle)
 {
@@ -145,12 +151,12 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BeginPass: {
         const PassInfo &pass = passes_[command.first];
         const PassActions &a = pass.actions;
-        text +=
-            fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}{}\n", name_of(pass),
-                        pass.host_framebuffer ? "host framebuffer" : name(ResourceKind::Framebuffer, command.id),
-                        to_string(a.color_load), to_string(a.color_store), to_string(a.depth_load),
-                        to_string(a.depth_store), to_string(" viewport", a.viewport), to_string(" scissor", a.scissor),
-                        a.is_srgb_encoded ? " srgb" : "", a.reads_attachments ? " reads attachments" : "");
+        text += fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}{}{}\n", name_of(pass),
+                            pass.host_framebuffer ? "host framebuffer" : name(ResourceKind::Framebuffer, command.id),
+                            to_string(a.color_load), to_string(a.color_store), to_string(a.depth_load),
+                            to_string(a.depth_store), to_string(a.depth_bias), to_string(" viewport", a.viewport),
+                            to_string(" scissor", a.scissor), a.is_srgb_encoded ? " srgb" : "",
+                            a.reads_attachments ? " reads attachments" : "");
         break;
       }
       case CommandKind::EndPass: text += "end\n"; break;

@@ -9,15 +9,26 @@ namespace gnomon::gpu {
 
 namespace {
 
+template <typename T>
+bool is_of(const DeviceDesc &desc)
+{
+  return std::holds_alternative<T>(desc.host);
+}
+
 std::unique_ptr<Device> create_gl(const DeviceDesc &desc)
 {
-  return create_gl_device({.sink = desc.sink, .shader_cache_folder = desc.shader_cache_folder});
+  return create_gl_device({.context = is_of<GlHost>(desc) ? ContextKind::Host : ContextKind::Headless,
+                           .sink = desc.sink,
+                           .shader_cache_folder = desc.shader_cache_folder});
 }
 
 std::unique_ptr<Device> create_vulkan(const DeviceDesc &desc)
 {
-  return create_vulkan_device(
-      {.compile_spirv = desc.compile_spirv, .sink = desc.sink, .shader_cache_folder = desc.shader_cache_folder});
+  const auto *host = std::get_if<VulkanHost>(&desc.host);
+  return create_vulkan_device({.compile_spirv = desc.compile_spirv,
+                               .host = host ? std::optional(*host) : std::nullopt,
+                               .sink = desc.sink,
+                               .shader_cache_folder = desc.shader_cache_folder});
 }
 
 std::unique_ptr<Device> create_any(const DeviceDesc &desc)
@@ -54,7 +65,14 @@ Backend backend_of(std::string_view name)
 
 std::unique_ptr<Device> create_device(const DeviceDesc &desc)
 {
-  switch (desc.backend) {
+  const Backend of_host = is_of<GlHost>(desc)       ? Backend::OpenGl
+                          : is_of<VulkanHost>(desc) ? Backend::Vulkan
+                                                    : desc.backend;
+  if (desc.backend != Backend::Auto && desc.backend != of_host) {
+    throw Error("backend '{}': the host's is '{}'", backend_names[std::size_t(desc.backend)],
+                backend_names[std::size_t(of_host)]);
+  }
+  switch (of_host) {
     case Backend::Auto: return create_any(desc);
     case Backend::OpenGl: return create_gl(desc);
     case Backend::Vulkan: return create_vulkan(desc);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <span>
+#include <variant>
 
 namespace gnomon::gpu {
 
@@ -18,8 +19,16 @@ inline constexpr std::span<const std::string_view> drawing_backend_names = std::
 /** \throws Error if \a name is none of backend_names */
 [[nodiscard]] Backend backend_of(std::string_view name);
 
+/** The context of OpenGL that is current on the thread. \see ContextKind::Host */
+struct GlHost {};
+
+/** Where a device draws: in a context of its own, or in the host's. */
+using Host = std::variant<std::monostate, GlHost, VulkanHost>;
+
 struct DeviceDesc {
+  /** Backend::Auto: that of the host, if there is one. */
   Backend backend = Backend::Auto;
+  Host host{};
   /** As VulkanDeviceDesc::compile_spirv. Empty: Vulkan does not start. */
   SpirvCompiler compile_spirv{};
   MessageSink sink{};
@@ -28,9 +37,9 @@ struct DeviceDesc {
 };
 
 /**
- * Create a device on a context of its own. If Backend::Auto takes Vulkan, the sink gets a line that says so and why.
+ * Create a device. If Backend::Auto takes Vulkan without a host, the sink gets a line that says so and why.
  *
- * \throws Error with the reasons, each named, for which the backend does not start
+ * \throws Error with the reasons, each named, for which the backend does not start, or if it is not the host's
  */
 [[nodiscard]] std::unique_ptr<Device> create_device(const DeviceDesc &desc);
 

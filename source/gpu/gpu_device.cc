@@ -114,6 +114,23 @@ void Device::copy_layers(const Texture &source, const Texture &target)
                                  std::min(from.layers, to.layers)}});
 }
 
+void Device::begin_image(const Framebuffer &framebuffer, int layout, const HostSemaphore &wait)
+{
+  GNOMON_ASSERT(framebuffer, "an empty framebuffer");
+  perform({Operation::TakeImage{framebuffer.id(), layout, wait, false}});
+}
+
+void Device::end_image(const Framebuffer &framebuffer, int layout, const HostSemaphore &signal)
+{
+  GNOMON_ASSERT(framebuffer, "an empty framebuffer");
+  perform({Operation::TakeImage{framebuffer.id(), layout, signal, true}});
+}
+
+void Device::host_framebuffer_create(ResourceId /*id*/, const std::string &name, const HostImage & /*image*/)
+{
+  throw Error("framebuffer '{}': only a device of Vulkan draws into images of the host", name);
+}
+
 std::vector<std::byte> Device::read(const Texture &texture, int layer)
 {
   const TextureDesc &desc = texture.desc();

@@ -16,6 +16,7 @@
 #include <array>
 #include <atomic>
 #include <map>
+#include <optional>
 #include <span>
 #include <thread>
 
@@ -68,6 +69,14 @@ class Device {
   [[nodiscard]] Texture create_texture(const TextureDesc &desc);
   [[nodiscard]] Sampler create_sampler(const SamplerDesc &desc);
   [[nodiscard]] Framebuffer create_framebuffer(const FramebufferDesc &desc);
+  /**
+   * A framebuffer whose colour attachment is an image of the host. It has no depth. Draws go between begin_image and
+   * end_image.
+   *
+   * \throws Error if the device does not use Vulkan, or if the image cannot be drawn into; during a recording, its
+   * submission throws the latter
+   */
+  [[nodiscard]] Framebuffer create_framebuffer(const std::string &name, const HostImage &image);
   [[nodiscard]] Buffer create_buffer(const BufferDesc &desc);
   [[nodiscard]] Batch create_batch(const BatchDesc &desc);
   /**
@@ -165,6 +174,15 @@ class Device {
   {
     return losses_taken_;
   }
+
+  /**
+   * Take the image of the host in \a framebuffer over for draws. \a layout: the VkImageLayout that it has, or
+   * VK_IMAGE_LAYOUT_UNDEFINED, which is 0, if its content is not needed. Work that is submitted from now on waits for
+   * \a wait; without a semaphore, only for what was submitted to the same queue before.
+   */
+  void begin_image(const Framebuffer &framebuffer, int layout, const HostSemaphore &wait = {});
+  /** Submit all work on the image, give it back in the VkImageLayout \a layout, and signal \a signal after it. */
+  void end_image(const Framebuffer &framebuffer, int layout, const HostSemaphore &signal = {});
 
   /** Read level 0 of one layer: rows from the bottom, tightly packed. Waits for the device. \pre not is_recording */
   [[nodiscard]] std::vector<std::byte> read(const Texture &texture, int layer = 0);
@@ -269,6 +287,9 @@ class Device {
   virtual void texture_create(ResourceId id, const TextureDesc &desc) = 0;
   virtual void sampler_create(ResourceId id, const SamplerDesc &desc) = 0;
   virtual void framebuffer_create(ResourceId id, const FramebufferLayout &layout) = 0;
+  /** Only backends of Vulkan have images of the host. */
+  virtual void host_framebuffer_create(ResourceId id, const std::string &name, const HostImage &image);
+  virtual void image_take(const Operation::TakeImage & /*take*/) {}
   virtual void buffer_create(ResourceId id, const BufferDesc &desc) = 0;
   /**
    * \a vertex_capacity and \a index_capacity: the numbers of elements that the shared buffers must hold from now on.
@@ -499,9 +520,11 @@ struct GlDeviceDesc {
 struct VulkanDeviceDesc {
   /** Required. Compiles the text of shaders. */
   SpirvCompiler compile_spirv{};
+  /** Empty: the device has an instance and a VkDevice of its own. */
+  std::optional<VulkanHost> host{};
   /**
-   * Use the validation layers, with checks of synchronisation, and throw their messages as Error. They take several
-   * times the time of the driver on the CPU.
+   * Without a host: use the validation layers, with checks of synchronisation, and throw their messages as Error. They
+   * take several times the time of the driver on the CPU.
    */
   bool is_debug = false;
   MessageSink sink{};
@@ -510,11 +533,10 @@ struct VulkanDeviceDesc {
 };
 
 /**
- * Create a device that uses Vulkan 1.3, on its own instance and VkDevice. It has no batches, textures and framebuffers
- * of the host.
+ * Create a device that uses Vulkan 1.3. Of the host, it can draw into images, and has no batches and textures.
  *
- * \throws Error if this build has no Vulkan, if there is no Vulkan driver, or if no physical device has the features
- * that are needed, naming each device and what it lacks
+ * \throws Error if this build has no Vulkan, if there is no Vulkan driver, or if no physical device, or the host's
+ * VkDevice, has the features that are needed, naming each device and what it lacks
  */
 [[nodiscard]] std::unique_ptr<Device> create_vulkan_device(const VulkanDeviceDesc &desc);
 

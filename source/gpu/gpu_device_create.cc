@@ -145,6 +145,26 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
           size_px};
 }
 
+Framebuffer Device::create_framebuffer(const std::string &name, const HostImage &image)
+{
+  const auto refuse = [&](std::string_view why) { throw Error("framebuffer '{}' of the host's image: {}", name, why); };
+  const glm::ivec2 size = image.size_px;
+  if (!image.image) {
+    refuse("there is no image");
+  }
+  if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > limits_.texture_size_max) {
+    refuse(fmt::format("it is {}x{}, but this device supports 1 to {}", size.x, size.y, limits_.texture_size_max));
+  }
+  if (image.samples < 1 || (image.samples > 1 && image.rows == RowOrder::TopFirst)) {
+    refuse(fmt::format("{} samples with the top row first", image.samples));
+  }
+  return {make(ResourceKind::Framebuffer, {name, FramebufferInfo{.attachments = {}, .size_px = size}}, "of the host", 0,
+               [&](ResourceId id) {
+                 return Operation::CreateHostFramebuffer{id, name, image};
+               }),
+          size};
+}
+
 Buffer Device::create_buffer(const BufferDesc &desc)
 {
   const std::size_t max =
@@ -283,17 +303,36 @@ static void check_limits(std::string_view name, const ShaderInterface &interface
   }
 }
 
+/** The defines and constants of \a desc, with spaces. */
+static std::string variant_of(const ShaderDesc &desc)
+{
+  std::string variant = fmt::format("{}", fmt::join(desc.defines, " "));
+  for (const ShaderConstant &constant : desc.constants) {
+    variant += fmt::format("{}{}={}", variant.empty() ? "" : " ", constant.name, constant.value);
+  }
+  return variant;
+}
+
 Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, const ShaderReflection &reflection,
                              const ShaderFiles &stand_in)
 {
   std::vector<ShaderSource> stages = preprocess(desc, files);
   std::vector<ShaderSource> stand_in_stages = stand_in ? preprocess(desc, stand_in) : std::vector<ShaderSource>();
+  std::vector<StageConstant> constants = stage_constants(desc, stages);
+  if (!desc.constants.empty() && !limits_.has_specialization) {
+    for (std::vector<ShaderSource> *sources : {&stages, &stand_in_stages}) {
+      for (ShaderSource &stage : *sources) {
+        stage.text = with_constants(stage.text, desc.constants);
+      }
+    }
+    constants.clear();
+  }
   ShaderInterface interface = reflection(desc.name, stages);
   if (!desc.geometry_path.empty() && !limits_.has_geometry_shader) {
     throw Error("shader '{}': this device has no geometry shaders", desc.name);
   }
   check_limits(desc.name, interface, limits_);
-  const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
+  const std::string detail = variant_of(desc);
   Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0, [&](ResourceId id) {
     std::vector<std::string> samplers;
     for (const ShaderInterface::Binding &binding : interface.bindings) {
@@ -301,7 +340,8 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
         samplers.push_back(binding.name);
       }
     }
-    return Operation::CreateShader{id, desc, std::move(stages), std::move(samplers), std::move(stand_in_stages)};
+    return Operation::CreateShader{
+        id, desc, std::move(stages), std::move(samplers), std::move(constants), std::move(stand_in_stages)};
   });
   return {std::move(resource), desc.name, std::move(interface)};
 }
@@ -310,7 +350,7 @@ std::shared_ptr<SharedShader> Device::shared_shader(const ShaderDesc &desc, std:
                                                     const std::function<void(SharedShader &made)> &make)
 {
   std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", desc.name, desc.vertex_path, desc.geometry_path,
-                                desc.fragment_path, fmt::join(desc.defines, " "), text);
+                                desc.fragment_path, variant_of(desc), text);
   auto found = shared_shaders_.find(key);
   if (found == shared_shaders_.end() || !found->second.shared->shader) {
     const auto made = std::make_shared<SharedShader>();

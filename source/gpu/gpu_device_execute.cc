@@ -97,6 +97,10 @@ void Device::execute(const Operation &operation, Packet *packet)
           },
           [&](const Operation::CreateSampler &call) { sampler_create(call.id, call.desc); },
           [&](const Operation::CreateFramebuffer &call) { framebuffer_create(call.id, call.layout); },
+          [&](const Operation::CreateHostFramebuffer &call) {
+            host_framebuffer_create(call.id, call.name, call.image);
+          },
+          [&](const Operation::TakeImage &call) { image_take(call); },
           [&](const Operation::CreateBuffer &call) { buffer_create(call.id, call.desc); },
           [&](const Operation::CreateBatch &call) {
             batch_create(call.desc, call.range, call.vertex_capacity, call.index_capacity);
@@ -140,7 +144,7 @@ void Device::execute(const Operation::CreateShader &create, Packet *packet)
       throw;
     }
     packet->feedback_.failed_shaders.push_back({create.id, error.what()});
-    make_shader({create.id, create.desc, create.stand_in, create.samplers, {}});
+    make_shader({create.id, create.desc, create.stand_in, create.samplers, create.constants, {}});
   }
 }
 

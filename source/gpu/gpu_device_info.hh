@@ -47,6 +47,8 @@ struct Limits {
   bool has_vertex_layer = true;
   /** Whether programs may have a geometry stage. OpenGL has it. */
   bool has_geometry_shader = true;
+  /** Whether specialisation constants are set after compilation; otherwise, their values become part of the text. */
+  bool has_specialization = false;
 };
 
 /** Work that a device has done since it was created. */
@@ -69,7 +71,8 @@ struct Counters {
 struct LiveResource {
   ResourceKind kind = ResourceKind::Texture;
   std::string name;
-  /** Textures: "WIDTHxHEIGHT FORMAT" or "WIDTHxHEIGHTxLAYERS FORMAT". Shaders: defines with spaces. Others: empty. */
+  /** Textures: "WIDTHxHEIGHT FORMAT" or "WIDTHxHEIGHTxLAYERS FORMAT". Shaders: defines and constants with spaces.
+   * Others: empty. */
   std::string detail;
   /** Bytes of content of a texture, buffer or batch; 0 for other kinds. */
   std::size_t size_bytes = 0;

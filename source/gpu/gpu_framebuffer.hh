@@ -99,6 +99,19 @@ enum class LoadAction : std::uint8_t {
 
 enum class StoreAction : std::uint8_t { Store, DontCare };
 
+/**
+ * What is added to the depths of triangles: slope * m + constant * r. m is the largest change of the triangle's depth
+ * from one pixel to the next, in x or in y. r is the smallest difference of depths that the format has near the
+ * triangle's largest depth: of Depth32F, that number's last digit (OpenGL 4.5, 14.6.5). Depth is reversed, therefore
+ * negative values move away from the view.
+ */
+struct DepthBias {
+  float constant = 0.0F;
+  float slope = 0.0F;
+
+  bool operator==(const DepthBias &) const = default;
+};
+
 /** Settings of a render pass. All colour attachments are loaded, cleared and stored in the same way. */
 struct PassActions {
   LoadAction color_load = LoadAction::Clear;
@@ -108,6 +121,7 @@ struct PassActions {
   StoreAction depth_store = StoreAction::Store;
   /** Depth is reversed: 0 is the far plane. */
   float clear_depth = 0.0F;
+  DepthBias depth_bias{};
   Rectangle viewport{};
   /** Draws and clears write only inside this rectangle. */
   Rectangle scissor{};

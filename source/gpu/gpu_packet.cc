@@ -21,6 +21,9 @@ Operation::Resource Operation::created() const
                         [](const CreateFramebuffer &made) {
                           return Resource{ResourceKind::Framebuffer, made.id};
                         },
+                        [](const CreateHostFramebuffer &made) {
+                          return Resource{ResourceKind::Framebuffer, made.id};
+                        },
                         [](const CreateBuffer &made) {
                           return Resource{ResourceKind::Buffer, made.id};
                         },
@@ -135,6 +138,9 @@ std::string Packet::serialize(const Device &device) const
               line(call.is_end ? "time end" : "time begin", ResourceKind::TimerQuery, call.query);
             },
             [&](const Operation::ReadBack &call) { line("read back", ResourceKind::Texture, call.texture); },
+            [&](const Operation::TakeImage &call) {
+              line(call.is_end ? "end image of" : "begin image of", ResourceKind::Framebuffer, call.framebuffer);
+            },
             [&](const Operation::SubmitList &call) { text += lists_[call.list]->serialize(device); },
             [&](const auto & /*call*/) {
               const Operation::Resource created = operation.created();

@@ -7,6 +7,7 @@
 #include "gpu_framebuffer.hh"
 #include "gpu_shader.hh"
 #include "gpu_texture.hh"
+#include "gpu_vulkan_host.hh"
 
 #include <memory>
 #include <span>
@@ -100,6 +101,19 @@ struct Operation {
     ResourceId id;
     FramebufferLayout layout;
   };
+  struct CreateHostFramebuffer {
+    ResourceId id;
+    std::string name;
+    HostImage image;
+  };
+  /** Begins or ends draws into an image of the host. */
+  struct TakeImage {
+    ResourceId framebuffer;
+    /** VkImageLayout. */
+    int layout;
+    HostSemaphore semaphore;
+    bool is_end;
+  };
   struct CreateBuffer {
     ResourceId id;
     BufferDesc desc;
@@ -122,6 +136,8 @@ struct Operation {
     std::vector<ShaderSource> stages;
     /** Names of the samplers that the shader declares. */
     std::vector<std::string> samplers;
+    /** Values that the backend sets. Empty without Limits::has_specialization. */
+    std::vector<StageConstant> constants;
     /** Compiled if `stages` do not compile; empty: that is an error. */
     std::vector<ShaderSource> stand_in;
   };
@@ -170,9 +186,9 @@ struct Operation {
   struct SubmitList {
     std::size_t list;
   };
-  std::variant<CreateTexture, CreateSampler, CreateFramebuffer, CreateBuffer, CreateBatch, CreateHostBatch,
-               CreateShader, CreateTimerQuery, Destroy, UpdateBuffer, UploadTexture, GenerateMipmaps, CopyLayers,
-               MarkTime, ReadBack, SubmitList>
+  std::variant<CreateTexture, CreateSampler, CreateFramebuffer, CreateHostFramebuffer, TakeImage, CreateBuffer,
+               CreateBatch, CreateHostBatch, CreateShader, CreateTimerQuery, Destroy, UpdateBuffer, UploadTexture,
+               GenerateMipmaps, CopyLayers, MarkTime, ReadBack, SubmitList>
       call;
 
   /** The resource that the call creates. Empty for batches that are ranges of shared buffers. */

@@ -4,6 +4,8 @@
 #include "gpu_error.hh"
 #include "gpu_shader_text.hh"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <sstream>
 
@@ -104,6 +106,19 @@ std::string ShaderSource::name_files(std::string_view log) const
 
 namespace {
 
+/** The lines of \a text without their ends. */
+std::vector<std::string_view> lines_of(std::string_view text)
+{
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    lines.push_back(line.ends_with('\r') ? line.substr(0, end - 1) : line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
 /** Expands the includes and defines of one stage. */
 class Preprocessor {
  public:
@@ -155,19 +170,6 @@ class Preprocessor {
     open_files_.pop_back();
     // The compiler reports branches that the file does not close.
     branches_.resize(outer_branches);
-  }
-
-  /** The lines of \a text without their ends. */
-  static std::vector<std::string_view> lines_of(std::string_view text)
-  {
-    std::vector<std::string_view> lines;
-    while (!text.empty()) {
-      const std::size_t end = std::min(text.find('\n'), text.size());
-      const std::string_view line = text.substr(0, end);
-      lines.push_back(line.ends_with('\r') ? line.substr(0, end - 1) : line);
-      text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return lines;
   }
 
   void append_line(std::string_view line, const std::string &path, int number, std::size_t file)
@@ -344,6 +346,91 @@ std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &
   add(ShaderStage::Geometry, desc.geometry_path);
   add(ShaderStage::Fragment, desc.fragment_path);
   return stages;
+}
+
+namespace {
+
+/** A line `SPECIALIZATION_CONSTANT(ID) const TYPE NAME = DEFAULT;`. */
+struct DeclaredConstant {
+  std::uint32_t id = 0;
+  std::string_view type;
+  std::string_view name;
+  /** `DEFAULT;` and what follows it. */
+  std::string_view rest;
+};
+
+std::optional<DeclaredConstant> declared_constant(std::string_view line)
+{
+  TextScanner scanner(line);
+  const auto take = [&](std::string_view text) { return scanner.skip_space().take(text); };
+  if (!take("SPECIALIZATION_CONSTANT") || !take("(")) {
+    return std::nullopt;
+  }
+  const std::optional<int> id = scanner.skip_space().take_number();
+  if (!id || !take(")") || !take("const")) {
+    return std::nullopt;
+  }
+  const std::string_view type = scanner.skip_space().take_word();
+  const std::string_view name = scanner.skip_space().take_word();
+  const bool has_default = take("=") && scanner.rest().find(';') != std::string_view::npos;
+  return has_default ? std::optional(DeclaredConstant{std::uint32_t(*id), type, name, scanner.rest()}) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<StageConstant> stage_constants(const ShaderDesc &desc, const std::vector<ShaderSource> &stages)
+{
+  std::vector<StageConstant> values;
+  std::vector<std::string_view> declared;
+  for (const ShaderSource &stage : stages) {
+    for (const std::string_view line : lines_of(stage.text)) {
+      const std::optional<DeclaredConstant> constant = declared_constant(line);
+      if (!constant) {
+        continue;
+      }
+      declared.push_back(constant->name);
+      const auto set = std::ranges::find(desc.constants, constant->name, &ShaderConstant::name);
+      if (set == desc.constants.end()) {
+        continue;
+      }
+      if (constant->type != "int" && constant->type != "bool") {
+        throw Error("shader '{}': the constant '{}' has the type {}, and only int and bool can be set", desc.name,
+                    set->name, constant->type);
+      }
+      const StageConstant value{stage.stage, constant->id,
+                                constant->type == "bool" ? std::int32_t(set->value != 0) : set->value};
+      // Branches of the text may declare it again.
+      if (std::ranges::find(values, value) == values.end()) {
+        values.push_back(value);
+      }
+    }
+  }
+  for (const ShaderConstant &constant : desc.constants) {
+    if (std::ranges::find(declared, constant.name) == declared.end()) {
+      throw Error("shader '{}' has no specialisation constant '{}'; it has: {}", desc.name, constant.name,
+                  declared.empty() ? "none" : fmt::format("{}", fmt::join(declared, ", ")));
+    }
+  }
+  return values;
+}
+
+std::string with_constants(std::string_view text, const std::vector<ShaderConstant> &constants)
+{
+  std::string result;
+  for (const std::string_view line : lines_of(text)) {
+    const std::optional<DeclaredConstant> constant = declared_constant(line);
+    const auto set = constant ? std::ranges::find(constants, constant->name, &ShaderConstant::name) : constants.end();
+    if (set == constants.end()) {
+      result += line;
+    }
+    else {
+      const auto head = line.substr(0, std::size_t(constant->rest.data() - line.data()));
+      result +=
+          fmt::format("{} {}({}){}", head, constant->type, set->value, constant->rest.substr(constant->rest.find(';')));
+    }
+    result += '\n';
+  }
+  return result;
 }
 
 }  // namespace gnomon::gpu

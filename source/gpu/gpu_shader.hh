@@ -19,6 +19,12 @@ using ShaderFiles = std::function<std::optional<std::string_view>(std::string_vi
 /** Returns the path that `#include "NAMED"` in the file \a includer refers to, where NAMED is \a named. */
 using IncludePath = std::function<std::string(std::string_view named, std::string_view includer)>;
 
+/** The value of a specialisation constant: of a `const int`, or of a `const bool`, where 0 is false. */
+struct ShaderConstant {
+  std::string name;
+  std::int32_t value = 0;
+};
+
 /** Description of a shader program. */
 struct ShaderDesc {
   std::string name;
@@ -28,6 +34,11 @@ struct ShaderDesc {
   std::string fragment_path;
   /** "NAME" or "NAME value", defined in every stage. */
   std::vector<std::string> defines;
+  /**
+   * Values of constants that the stages declare, each on a line `SPECIALIZATION_CONSTANT(ID) const TYPE NAME =
+   * DEFAULT;` (shared/slots_shared.h). The others have their defaults. Vulkan compiles a text once for all values.
+   */
+  std::vector<ShaderConstant> constants{};
 };
 
 enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture };
@@ -173,6 +184,26 @@ struct SourceError : Error {
  */
 [[nodiscard]] std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files,
                                                    const IncludePath &include_path = {});
+
+/** The value of a specialisation constant of one stage. */
+struct StageConstant {
+  ShaderStage stage = ShaderStage::Vertex;
+  std::uint32_t id = 0;
+  std::int32_t value = 0;
+
+  bool operator==(const StageConstant &) const = default;
+};
+
+/**
+ * The constants of \a desc in its \a stages, sorted by stage; each id of a stage once.
+ *
+ * \throws Error that names the shader and the constant, if no stage declares it, or its type is not `int` or `bool`
+ */
+[[nodiscard]] std::vector<StageConstant> stage_constants(const ShaderDesc &desc,
+                                                         const std::vector<ShaderSource> &stages);
+
+/** \a text of a stage with the values of \a constants as defaults, for an API without specialisation. */
+[[nodiscard]] std::string with_constants(std::string_view text, const std::vector<ShaderConstant> &constants);
 
 /**
  * Returns the interface of the program \a name with these \a stages, or throws Error. The engines' shaders use a table

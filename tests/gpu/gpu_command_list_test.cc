@@ -48,9 +48,11 @@ TEST_F(CommandListTest, SerializesEachCommandAsALine)
 {
   const glm::vec4 value(1);
   list.update(block, 32, std::as_bytes(std::span(&value, 1)));
-  list.begin_pass(
-      "main", framebuffer,
-      {.color_load = LoadAction::DontCare, .depth_load = LoadAction::Load, .depth_store = StoreAction::DontCare});
+  list.begin_pass("main", framebuffer,
+                  {.color_load = LoadAction::DontCare,
+                   .depth_load = LoadAction::Load,
+                   .depth_store = StoreAction::DontCare,
+                   .depth_bias = {-1, -2}});
   list.set_shader(shader.id());
   list.set_state(State::WriteColor | State::CullBack);
   list.bind_uniform(9, {block.id()});
@@ -69,7 +71,7 @@ TEST_F(CommandListTest, SerializesEachCommandAsALine)
   list.end_pass();
   EXPECT_EQ(list.serialize(*device),
             "update light_block 16 bytes at 32\n"
-            "begin main -> scene color dont_care/store depth load/dont_care\n"
+            "begin main -> scene color dont_care/store depth load/dont_care bias -1, -2\n"
             "  shader flat\n"
             "  state write_color cull_back\n"
             "  uniform light_block -> 9\n"

@@ -20,5 +20,14 @@ TEST(CreateDevice, NullNeedsNoDriver)
   test::expect_contains(create_device({.backend = Backend::Null})->description(), "null");
 }
 
+TEST(CreateDevice, TheBackendIsTheHosts)
+{
+  for (const Backend backend : {Backend::Vulkan, Backend::Null}) {
+    test::expect_contains(
+        test::error_of([&] { static_cast<void>(create_device({.backend = backend, .host = GlHost{}})); }),
+        "the host's is 'gl'");
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::gpu

@@ -409,6 +409,44 @@ TEST(Format, TexelsAreAsLargeAsTheirChannels)
   EXPECT_FALSE(is_depth(Format::R32F));
 }
 
+TEST(Device, RefusesConstantsThatAShaderLacksByName)
+{
+  const auto device = create_null_device();
+  const std::string fragment =
+      std::string(
+          "SPECIALIZATION_CONSTANT(0) const int taps = 4;\nSPECIALIZATION_CONSTANT(1) const float scale = 1.0;\n") +
+      test::COLOR_FRAG;
+  const auto make = [&](const std::vector<ShaderConstant> &constants, const std::string &text) {
+    return test::make_shader(*device, "lit", test::CLIP_SPACE_VERT, text, "", constants);
+  };
+  expect_refused(*device,
+                 [&] {
+                   make({{"tap", 1}}, fragment);
+                 },
+                 {"shader 'lit'", "no specialisation constant 'tap'", "taps, scale"});
+  expect_refused(*device, [&] { make({{"tap", 1}}, test::COLOR_FRAG); }, {"shader 'lit'", "'tap'", "it has: none"});
+  expect_refused(*device, [&] { make({{"scale", 1}}, fragment); }, {"shader 'lit'", "'scale' has the type float"});
+  EXPECT_EQ(device->live(make({{"taps", 9}}, fragment)).detail, "taps=9");
+}
+
+TEST(Device, ProgramsWithOtherConstantsAreNotShared)
+{
+  const auto device = create_null_device();
+  int made_count = 0;
+  const auto share = [&](std::int32_t value) {
+    const ShaderDesc desc{"lit", "vert", "", "frag", {}, {{"taps", value}}};
+    return device->shared_shader(desc, "", [&](SharedShader &made) {
+      made_count++;
+      made.shader = test::make_shader(*device, "lit", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+    });
+  };
+  const auto four = share(4);
+  const auto nine = share(9);
+  EXPECT_EQ(share(4), four);
+  EXPECT_NE(four, nine);
+  EXPECT_EQ(made_count, 2);
+}
+
 TEST(Live, ListsEachResourceWithItsSizeAndWrittenBytes)
 {
   const auto device = create_null_device();

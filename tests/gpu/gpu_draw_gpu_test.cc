@@ -161,6 +161,51 @@ TEST_F(DrawGpu, PushConstantsChangeBetweenDraws)
   }
 }
 
+TEST_F(DrawGpu, ConstantsOfAProgramAreThoseOfItsDescriptionOrTheirDefaults)
+{
+  constexpr const char *vertex = R"(
+layout(location = ATTRIBUTE_POSITION) in vec3 position;
+SPECIALIZATION_CONSTANT(0) const int shared_count = 5;
+layout(location = 0) flat out int count_of_vertex;
+void main()
+{
+  gl_Position = vec4(position, 1.0);
+  count_of_vertex = shared_count;
+})";
+  // The loop runs as often as the constant says. The same id is another constant in another stage.
+  constexpr const char *fragment = R"(
+  SPECIALIZATION_CONSTANT( 0 )  const bool is_negative = false;  // The sign.
+SPECIALIZATION_CONSTANT(7) const int count = 3;
+SPECIALIZATION_CONSTANT(3) const int shared_count = 5;
+layout(location = 0) flat in int count_of_vertex;
+layout(location = 0) out vec4 result;
+void main()
+{
+  float sum = 0.0;
+  for (int i = 0; i < count; i++) {
+    sum += 1.0;
+  }
+  result = vec4(is_negative ? -sum : sum, count_of_vertex, shared_count, 1.0);
+})";
+  const Batch full = test::full_triangle(*device, 0.5F);
+  const auto drawn = [&](const std::vector<ShaderConstant> &constants) {
+    const Shader shader = make_shader(*device, "constants", vertex, fragment, "", constants);
+    CommandList list;
+    list.begin_pass("pass", framebuffer, {});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    append_draw(list, full);
+    list.end_pass();
+    device->submit(list);
+    return read_as<glm::vec4>(*device, picture).front();
+  };
+  EXPECT_EQ(drawn({}), glm::vec4(3, 5, 5, 1));
+  EXPECT_EQ(drawn({{"count", 4}}), glm::vec4(4, 5, 5, 1));
+  EXPECT_EQ(drawn({{"is_negative", 1}, {"count", -1}}), glm::vec4(0, 5, 5, 1));
+  EXPECT_EQ(drawn({{"is_negative", 2}, {"shared_count", -9}}), glm::vec4(-3, -9, -9, 1));
+  EXPECT_EQ(drawn({{"is_negative", 0}}), glm::vec4(3, 5, 5, 1));
+}
+
 TEST_F(DrawGpu, PushConstantsOfDifferentSizesStandApart)
 {
   const auto shader_of = [&](int count) {

@@ -44,7 +44,9 @@ struct HostedScene {
     const glm::vec4 value(1000);
     commands.update(later, 0, std::as_bytes(std::span(&value, 1)));
     commands.begin_pass("scene", framebuffer,
-                        {.color_store = StoreAction::Store, .depth_store = StoreAction::DontCare});
+                        {.color_store = StoreAction::Store,
+                         .depth_store = StoreAction::DontCare,
+                         .depth_bias = {.constant = 1, .slope = 1}});
     commands.set_shader(shader.id());
     commands.set_state(State::WriteColor | State::WriteDepth | State::DepthNearerEqual | State::CullBack |
                        State::BlendAdd | State::DepthClamp);

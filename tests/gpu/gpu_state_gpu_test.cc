@@ -87,6 +87,38 @@ TEST_F(StateGpu, DepthIsTheClipCoordinateItself)
   }
 }
 
+TEST_F(StateGpu, DepthBiasOfAPassIsItsSlopeInPixelsAndItsConstantInDigits)
+{
+  // Rises by 1 / 32 from one pixel to the next, along x or y, up to 0.75, whose last digit is 2^-24.
+  for (const int axis : {0, 1}) {
+    std::array<glm::vec3, 3> positions = {glm::vec3(-1, -1, 0.25F), glm::vec3(3, -1, 0.25F), glm::vec3(-1, 3, 0.25F)};
+    positions[std::size_t(axis) + 1].z = 0.75F;
+    const std::array<std::uint32_t, 3> indices = {0, 1, 2};
+    const Batch tilted = device->create_batch({"tilted", positions, {}, indices});
+    const auto depths = [&](const DepthBias &bias) {
+      CommandList list;
+      list.begin_pass("draw", framebuffer, {.depth_bias = bias});
+      list.set_shader(shader.id());
+      list.set_state(NEARER);
+      push_constants(list, shader, glm::vec4(1));
+      append_draw(list, tilted);
+      list.end_pass();
+      device->submit(list);
+      return gpu::read_as<float>(*device, depth);
+    };
+    const std::vector<float> unbiased = depths({});
+    for (const DepthBias bias : {DepthBias{0, -2}, {-1024, 0}, {1024, 0.5F}}) {
+      const std::vector<float> biased = depths(bias);
+      const float expected = bias.slope / 32.0F + bias.constant * 0x1p-24F;
+      for (std::size_t i = 0; i < unbiased.size(); i++) {
+        // Both depths are rounded to 2^-24.
+        ASSERT_NEAR(biased[i] - unbiased[i], expected, 0x1p-23F) << "texel " << i << ", axis " << axis;
+      }
+    }
+    EXPECT_EQ(depths({}), unbiased) << "the bias of an earlier pass";
+  }
+}
+
 TEST_F(StateGpu, NearerIsTheGreaterDepthInAnyOrder)
 {
   const Draw near{.state = NEARER, .z = 0.75F, .value = 1};

@@ -73,7 +73,8 @@ struct ShaderTexts {
 
 /** A shader of texts without `#version`, which may use the slots, VERTEX_INDEX and INSTANCE_INDEX. */
 inline gpu::Shader make_shader(gpu::Device &device, const std::string &name, const std::string &vertex,
-                               const std::string &fragment, const std::string &geometry = "")
+                               const std::string &fragment, const std::string &geometry = "",
+                               const std::vector<gpu::ShaderConstant> &constants = {})
 {
   const std::string head = R"(#version 450 core
 #include "shared/slots_shared.h"
@@ -86,7 +87,7 @@ inline gpu::Shader make_shader(gpu::Device &device, const std::string &name, con
 #endif
 )";
   const ShaderTexts texts{{{"vert", head + vertex}, {"geom", head + geometry}, {"frag", head + fragment}}};
-  return device.create_shader({name, "vert", geometry.empty() ? "" : "geom", "frag", {}}, texts.files(),
+  return device.create_shader({name, "vert", geometry.empty() ? "" : "geom", "frag", {}, constants}, texts.files(),
                               shader_check::reflect);
 }
 

@@ -129,6 +129,28 @@ void main()
   EXPECT_EQ(read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(24)));
 }
 
+TEST_F(VulkanGpu, ATextIsCompiledOnceForAllValuesOfItsConstants)
+{
+  std::string folder = (std::filesystem::temp_directory_path() / "gnomon_constants.XXXXXX").string();
+  ASSERT_TRUE(mkdtemp(folder.data()));
+  int compiled_count = 0;
+  const auto compile = [&](std::string_view name, const std::vector<ShaderSource> &stages) {
+    compiled_count++;
+    return shader_check::compile_spirv(name, stages);
+  };
+  {
+    const auto other = create_vulkan_device({.compile_spirv = compile, .shader_cache_folder = folder});
+    for (const std::int32_t value : {0, 1, 2}) {
+      test::make_shader(*other, "constants", test::CLIP_SPACE_VERT,
+                        std::string("SPECIALIZATION_CONSTANT(0) const int taps = 4;") + test::COLOR_FRAG, "",
+                        {{"taps", value}});
+    }
+    EXPECT_EQ(other->counters().shaders_from_cache, 2U);
+  }
+  EXPECT_EQ(compiled_count, 1);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(VulkanDevice, WithoutACompilerOfShadersIsAnError)
 {
   test::expect_contains(test::error_of([] { static_cast<void>(create_vulkan_device({})); }), "no compiler of shaders");
@@ -191,12 +213,16 @@ void main()
     list.bind_texture(16, texels.id(), sampler.id());
     test::append_draw(list, full);
     list.end_pass();
+    const TimerQuery timer = device->create_timer_query("thing");
+    device->time_begin(timer);
     device->submit(list);
+    device->time_end(timer);
+    static_cast<void>(device->take_seconds(timer));
     return read_as<glm::vec4>(*device, picture);
   }
   /** The error of drawn() while the function \a member of the driver fails with \a result. */
   template <typename Function>
-  std::string error_if(Function VolkDeviceTable::*member, VkResult result)
+  std::string error_if(Function VulkanDeviceTable::*member, VkResult result)
   {
     const Function real = std::exchange(context->vk.*member, &Failing<Function>::call);
     Failing<Function>::result = result;
@@ -220,16 +246,16 @@ TEST_F(VulkanFailure, AFailedCallIsAnErrorThatNamesTheThingAndTheDeviceRemainsUs
       EXPECT_EQ(drawn(3), expected);
     }
   };
-  fail(&VolkDeviceTable::vkCreateImage, "'thing'");
-  fail(&VolkDeviceTable::vkBindImageMemory, "'thing'");
-  fail(&VolkDeviceTable::vkCreateImageView, "'thing'");
-  fail(&VolkDeviceTable::vkCreateBufferView, "'thing'");
-  fail(&VolkDeviceTable::vkCreateSampler, "'thing'");
-  fail(&VolkDeviceTable::vkCreateShaderModule, "'thing'");
-  fail(&VolkDeviceTable::vkCreateDescriptorSetLayout, "'thing'");
-  fail(&VolkDeviceTable::vkCreatePipelineLayout, "'thing'");
-  fail(&VolkDeviceTable::vkCreateGraphicsPipelines, "'thing'");
-  fail(&VolkDeviceTable::vkAllocateDescriptorSets, "bindings");
+  fail(&VulkanDeviceTable::vkCreateImage, "'thing'");
+  fail(&VulkanDeviceTable::vkBindImageMemory, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateImageView, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateBufferView, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateSampler, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateShaderModule, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateDescriptorSetLayout, "'thing'");
+  fail(&VulkanDeviceTable::vkCreatePipelineLayout, "'thing'");
+  fail(&VulkanDeviceTable::vkCreateGraphicsPipelines, "'thing'");
+  fail(&VulkanDeviceTable::vkAllocateDescriptorSets, "bindings");
   EXPECT_TRUE(device->live_resources().empty());
   // New memory, which is allocated for what does not fit into a block.
   const auto real = std::exchange(context->vk.vkAllocateMemory, &Failing<PFN_vkAllocateMemory>::call);
@@ -243,6 +269,8 @@ TEST_F(VulkanFailure, AFailedCallIsAnErrorThatNamesTheThingAndTheDeviceRemainsUs
   EXPECT_EQ(drawn(3), expected);
 }
 
+/** By each function that may report it: at the start and the end of recording, at submission, while waiting, at reads.
+ */
 TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
 {
   const auto lose = [&](auto member) {
@@ -251,10 +279,12 @@ TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
     make();
     EXPECT_EQ(drawn(3), std::vector<glm::vec4>(4, glm::vec4(3)));
   };
-  lose(&VolkDeviceTable::vkQueueSubmit2);
-  lose(&VolkDeviceTable::vkWaitSemaphores);
-  lose(&VolkDeviceTable::vkGetSemaphoreCounterValue);
-  lose(&VolkDeviceTable::vkEndCommandBuffer);
+  lose(&VulkanDeviceTable::vkQueueSubmit2);
+  lose(&VulkanDeviceTable::vkWaitSemaphores);
+  lose(&VulkanDeviceTable::vkGetSemaphoreCounterValue);
+  lose(&VulkanDeviceTable::vkBeginCommandBuffer);
+  lose(&VulkanDeviceTable::vkEndCommandBuffer);
+  lose(&VulkanDeviceTable::vkGetQueryPoolResults);
 }
 
 /** Barriers, of which one changes layouts, but orders nothing. */
@@ -268,7 +298,7 @@ struct WeakBarrier {
   /** The weak one is the first of a submission. */
   static inline bool is_weak_first = false;
 
-  static void begin(VolkDeviceTable &vk, int weak_one)
+  static void begin(VulkanDeviceTable &vk, int weak_one)
   {
     real = std::exchange(vk.vkCmdPipelineBarrier2, &record);
     real_begin = std::exchange(vk.vkBeginCommandBuffer, &begin_commands);

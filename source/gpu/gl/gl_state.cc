@@ -260,6 +260,20 @@ void HostState::keep_draw_state()
   set_draw_defaults();
 }
 
+void HostState::keep_polygon_offset()
+{
+  if (!is_host_ || polygon_offset_) {
+    return;
+  }
+  PolygonOffset &saved = polygon_offset_.emplace();
+  glGetFloatv(GL_POLYGON_OFFSET_FACTOR, &saved.factor);
+  glGetFloatv(GL_POLYGON_OFFSET_UNITS, &saved.units);
+  constexpr int version_with_clamp = 46;
+  if (epoxy_gl_version() >= version_with_clamp || epoxy_has_gl_extension("GL_ARB_polygon_offset_clamp")) {
+    glGetFloatv(GL_POLYGON_OFFSET_CLAMP, &saved.clamp);
+  }
+}
+
 void HostState::keep_color_masks(GLuint count)
 {
   for (auto i = GLuint(color_masks_.size()); is_host_ && i < count; i++) {
@@ -365,6 +379,13 @@ void HostState::restore()
   if (draw_) {
     restore(*draw_);
   }
+  if (polygon_offset_ && polygon_offset_->clamp != 0.0F) {
+    glPolygonOffsetClamp(polygon_offset_->factor, polygon_offset_->units, polygon_offset_->clamp);
+  }
+  else if (polygon_offset_) {
+    glPolygonOffset(polygon_offset_->factor, polygon_offset_->units);
+  }
+  polygon_offset_.reset();
   pixel_stores_.clear();
   color_buffers_.clear();
   color_masks_.clear();

@@ -48,6 +48,8 @@ class HostState {
    * sets what a command list does not set itself.
    */
   void keep_draw_state();
+  /** Before a change of the polygon offset. */
+  void keep_polygon_offset();
   /** Before changes of blending and colour masks of the draw buffers below \a count. */
   void keep_color_buffers(GLuint count);
   /** Before changes of the colour masks alone. */
@@ -117,12 +119,19 @@ class HostState {
     GLfloat point_size = 1.0F;
     GLint provoking_vertex = 0;
   };
+  struct PolygonOffset {
+    GLfloat factor = 0.0F;
+    GLfloat units = 0.0F;
+    /** 0 if the context has no clamp. */
+    GLfloat clamp = 0.0F;
+  };
   void restore_bindings();
   void restore(const DrawState &saved) const;
 
   bool is_host_;
   GLint viewport_count_ = 0;
   std::optional<DrawState> draw_;
+  std::optional<PolygonOffset> polygon_offset_;
   std::optional<GLint> active_texture_;
   std::vector<Buffer> buffers_;
   std::vector<IndexedBuffer> indexed_buffers_;

@@ -264,6 +264,12 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
     glEnablei(GL_SCISSOR_TEST, 0);
   }
   set_capability(GL_FRAMEBUFFER_SRGB, actions.is_srgb_encoded);
+  const bool is_biased = actions.depth_bias != DepthBias();
+  if (is_biased) {
+    host_state_.keep_polygon_offset();
+    glPolygonOffset(actions.depth_bias.slope, actions.depth_bias.constant);
+  }
+  set_capability(GL_POLYGON_OFFSET_FILL, is_biased);
   if (actions.reads_attachments) {
     glTextureBarrier();
   }

@@ -44,6 +44,10 @@ class NullDevice final : public Device {
   {
     before("create framebuffer");
   }
+  void host_framebuffer_create(ResourceId /*id*/, const std::string & /*name*/, const HostImage & /*image*/) override
+  {
+    before("create framebuffer");
+  }
   void buffer_create(ResourceId /*id*/, const BufferDesc & /*desc*/) override
   {
     before("create buffer");

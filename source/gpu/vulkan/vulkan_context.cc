@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#define VOLK_IMPLEMENTATION
 #include "vulkan_context.hh"
 
 #include "gpu_error.hh"
@@ -7,9 +6,11 @@
 
 #include <fmt/ranges.h>
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstring>
-#include <optional>
+#include <iterator>
 #include <utility>
 
 namespace gnomon::gpu {
@@ -54,56 +55,118 @@ struct Features {
             {"synchronization2", &v13.synchronization2},
             {"provokingVertexLast", &provoking_vertex.provokingVertexLast}};
   }
+
+  /** Sets those that \a enabled and its chain have. */
+  void read(const VkPhysicalDeviceFeatures2 &enabled)
+  {
+    core.features = enabled.features;
+    const auto set = [](VkBool32 &feature, VkBool32 value) { feature = feature | value; };
+    for (auto *link = static_cast<const VkBaseInStructure *>(enabled.pNext); link; link = link->pNext) {
+      const auto as = [&]<typename T>(const T & /*type*/) -> const T & { return *reinterpret_cast<const T *>(link); };
+      switch (link->sType) {
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES: {
+          const auto &chained = as(VkPhysicalDeviceVulkan12Features{});
+          set(v12.timelineSemaphore, chained.timelineSemaphore);
+          set(v12.hostQueryReset, chained.hostQueryReset);
+          set(v12.shaderOutputLayer, chained.shaderOutputLayer);
+          break;
+        }
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES: {
+          const auto &chained = as(VkPhysicalDeviceVulkan13Features{});
+          set(v13.dynamicRendering, chained.dynamicRendering);
+          set(v13.synchronization2, chained.synchronization2);
+          break;
+        }
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES:
+          set(v12.timelineSemaphore, as(VkPhysicalDeviceTimelineSemaphoreFeatures{}).timelineSemaphore);
+          break;
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_HOST_QUERY_RESET_FEATURES:
+          set(v12.hostQueryReset, as(VkPhysicalDeviceHostQueryResetFeatures{}).hostQueryReset);
+          break;
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES:
+          set(v13.dynamicRendering, as(VkPhysicalDeviceDynamicRenderingFeatures{}).dynamicRendering);
+          break;
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES:
+          set(v13.synchronization2, as(VkPhysicalDeviceSynchronization2Features{}).synchronization2);
+          break;
+        case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROVOKING_VERTEX_FEATURES_EXT:
+          set(provoking_vertex.provokingVertexLast,
+              as(VkPhysicalDeviceProvokingVertexFeaturesEXT{}).provokingVertexLast);
+          break;
+        default: break;
+      }
+    }
+  }
+
+  /** Names of those that are required and not set. */
+  std::vector<std::string> missing()
+  {
+    std::vector<std::string> names;
+    for (const Named &feature : required()) {
+      if (*feature.value == VK_FALSE) {
+        names.emplace_back(feature.name);
+      }
+    }
+    return names;
+  }
 };
 
-bool has_extension(VkPhysicalDevice device, const char *name)
+bool has_extension(const VulkanInstanceTable &vk, VkPhysicalDevice device, const char *name)
 {
   std::uint32_t count = 0;
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
   std::vector<VkExtensionProperties> extensions(count);
-  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
   return std::ranges::any_of(extensions, [&](const auto &e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
-/** Index of a queue family for graphics; empty: there is none. */
-std::optional<std::uint32_t> graphics_family(VkPhysicalDevice device, int &timestamp_bits)
+std::vector<VkQueueFamilyProperties> queue_families(const VulkanInstanceTable &vk, VkPhysicalDevice device)
 {
   std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  for (std::uint32_t i = 0; i < count; i++) {
-    if ((families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0) {
-      timestamp_bits = int(families[i].timestampValidBits);
-      return i;
-    }
+  vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
+}
+
+bool has_graphics(const VkQueueFamilyProperties &family)
+{
+  return (family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
+}
+
+VkPhysicalDeviceProperties properties_of(const VulkanInstanceTable &vk, VkPhysicalDevice device)
+{
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, nullptr, {}};
+  vk.vkGetPhysicalDeviceProperties2(device, &properties);
+  return properties.properties;
+}
+
+/** Empty, or that a device of \a version is too old. */
+std::vector<std::string> missing_version(std::uint32_t version)
+{
+  if (version >= api_version) {
+    return {};
   }
-  return std::nullopt;
+  return {fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
 }
 
 /** What \a device lacks, by name. */
-std::vector<std::string> missing_in(VkPhysicalDevice device, const VkPhysicalDeviceProperties &properties)
+std::vector<std::string> missing_in(const VulkanInstanceTable &vk, VkPhysicalDevice device,
+                                    const VkPhysicalDeviceProperties &properties)
 {
-  std::vector<std::string> missing;
-  if (properties.apiVersion < api_version) {
-    missing.push_back(fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(properties.apiVersion),
-                                  VK_API_VERSION_MINOR(properties.apiVersion)));
+  std::vector<std::string> missing = missing_version(properties.apiVersion);
+  if (!missing.empty()) {
     return missing;
   }
-  int timestamp_bits = 0;
-  if (!graphics_family(device, timestamp_bits)) {
+  if (std::ranges::none_of(queue_families(vk, device), has_graphics)) {
     missing.emplace_back("a queue for graphics");
   }
-  if (!has_extension(device, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME)) {
+  if (!has_extension(vk, device, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME)) {
     missing.emplace_back(VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME);
   }
   Features features;
-  vkGetPhysicalDeviceFeatures2(device, &features.core);
-  for (const Features::Named &feature : features.required()) {
-    if (*feature.value == VK_FALSE) {
-      missing.emplace_back(feature.name);
-    }
-  }
+  vk.vkGetPhysicalDeviceFeatures2(device, &features.core);
+  std::ranges::move(features.missing(), std::back_inserter(missing));
   return missing;
 }
 
@@ -119,16 +182,16 @@ int rank_of(VkPhysicalDeviceType type)
   }
 }
 
-/** Loads what volk has of the loader. Its functions are global, and serve all instances. */
-void load_loader()
+/** Of the library of Vulkan, which stays loaded. */
+PFN_vkGetInstanceProcAddr load_loader()
 {
-  if (!vkCreateInstance && volkInitialize() != VK_SUCCESS) {
+  void *library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+  void *loader = library ? dlsym(library, "vkGetInstanceProcAddr") : nullptr;
+  if (!loader) {
     throw TransientError("Vulkan: there is no loader (libvulkan.so.1)");
   }
+  return reinterpret_cast<PFN_vkGetInstanceProcAddr>(loader);
 }
-
-/** Held while the functions of the loader are loaded. */
-std::mutex loader_mutex;
 
 }  // namespace
 
@@ -151,9 +214,84 @@ VulkanContext::~VulkanContext()
   destroy();
 }
 
+VulkanContext::VulkanContext(const VulkanHost &host)
+    : physical_device(host.physical_device),
+      device(host.device),
+      queue(host.queue),
+      queue_family(host.queue_family),
+      loader_(host.loader),
+      instance_(host.instance),
+      is_host_(true),
+      lock_queue_(host.lock_queue),
+      unlock_queue_(host.unlock_queue)
+{
+  if (!loader_ || !instance_ || !physical_device || !device || !queue) {
+    throw Error(
+        "Vulkan: the host's loader, instance, physical device, device "
+        "or queue is missing");
+  }
+  load_instance();
+  const VkPhysicalDeviceProperties properties = properties_of(instance, physical_device);
+  std::vector<std::string> missing = missing_version(properties.apiVersion);
+  const std::vector<VkQueueFamilyProperties> families = queue_families(instance, physical_device);
+  if (queue_family >= families.size() || !has_graphics(families[queue_family])) {
+    missing.push_back(fmt::format("graphics in the queue family {}", queue_family));
+  }
+  const std::string extension = VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME;
+  if (std::ranges::find(host.extensions, extension) == host.extensions.end()) {
+    missing.push_back(extension);
+  }
+  Features enabled;
+  if (host.features) {
+    enabled.read(*host.features);
+  }
+  std::ranges::move(enabled.missing(), std::back_inserter(missing));
+  if (!missing.empty()) {
+    throw Error("Vulkan: the host's device, {}, is made without {}", properties.deviceName, fmt::join(missing, ", "));
+  }
+  load_device();
+  describe(enabled.core.features, enabled.v12.shaderOutputLayer == VK_TRUE);
+}
+
+void VulkanContext::load_instance()
+{
+#define GNOMON_VULKAN_LOAD(NAME)                                                      \
+  if (!(instance.NAME = instance_function<PFN_##NAME>(#NAME))) {                      \
+    throw Error("Vulkan: the instance has no {}: is it made for Vulkan 1.3?", #NAME); \
+  }
+  GNOMON_VULKAN_INSTANCE_FUNCTIONS(GNOMON_VULKAN_LOAD)
+#undef GNOMON_VULKAN_LOAD
+}
+
+void VulkanContext::load_device()
+{
+#define GNOMON_VULKAN_LOAD(NAME)                                                                \
+  if (!(vk.NAME = reinterpret_cast<PFN_##NAME>(instance.vkGetDeviceProcAddr(device, #NAME)))) { \
+    throw Error("Vulkan: the device has no {}: is the instance made for Vulkan 1.3?", #NAME);   \
+  }
+  GNOMON_VULKAN_DEVICE_FUNCTIONS(GNOMON_VULKAN_LOAD)
+#undef GNOMON_VULKAN_LOAD
+}
+
+VkResult VulkanContext::submit(const VkSubmitInfo2 &info)
+{
+  if (lock_queue_) {
+    lock_queue_();
+  }
+  const VkResult result = vk.vkQueueSubmit2(queue, 1, &info, VK_NULL_HANDLE);
+  if (unlock_queue_) {
+    unlock_queue_();
+  }
+  return result;
+}
+
 void VulkanContext::destroy()
 {
-  if (device != VK_NULL_HANDLE) {
+  if (is_host_) {
+    return;
+  }
+  // Without the function, the device or the instance could not be loaded.
+  if (vk.vkDestroyDevice) {
     vk.vkDestroyDevice(device, nullptr);
   }
   for (const std::string &message : take_messages()) {
@@ -163,15 +301,14 @@ void VulkanContext::destroy()
     instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_,
                                                                                               nullptr);
   }
-  if (instance_ != VK_NULL_HANDLE) {
-    vkDestroyInstance(instance_, nullptr);
+  if (instance.vkDestroyInstance) {
+    instance.vkDestroyInstance(instance_, nullptr);
   }
 }
 
 void VulkanContext::create_instance(bool is_debug)
 {
-  const std::scoped_lock lock(loader_mutex);
-  load_loader();
+  loader_ = load_loader();
   const VkApplicationInfo application{
       VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "gnomon", 0, "gnomon", 0, api_version};
   VkInstanceCreateInfo info{};
@@ -191,15 +328,12 @@ void VulkanContext::create_instance(bool is_debug)
     info.enabledExtensionCount = std::uint32_t(extensions.size());
     info.ppEnabledExtensionNames = extensions.data();
   }
-  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  const VkResult result = instance_function<PFN_vkCreateInstance>("vkCreateInstance")(&info, nullptr, &instance_);
   if (result == VK_ERROR_LAYER_NOT_PRESENT) {
     throw Error("Vulkan: the validation layers are not installed ({})", validation_layer);
   }
   check(result, "Vulkan");
-  // Once: those of extensions, which another instance may lack, are not used.
-  if (!vkEnumeratePhysicalDevices) {
-    volkLoadInstanceOnly(instance_);
-  }
+  load_instance();
   if (is_debug) {
     VkDebugUtilsMessengerCreateInfoEXT messenger{};
     messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -218,15 +352,14 @@ void VulkanContext::create_instance(bool is_debug)
 void VulkanContext::create_device()
 {
   std::uint32_t count = 0;
-  check(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "Vulkan");
+  check(instance.vkEnumeratePhysicalDevices(instance_, &count, nullptr), "Vulkan");
   std::vector<VkPhysicalDevice> devices(count);
-  check(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "Vulkan");
+  check(instance.vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "Vulkan");
   std::vector<std::string> refused;
   int rank = -1;
   for (VkPhysicalDevice candidate : devices) {
-    VkPhysicalDeviceProperties properties{};
-    vkGetPhysicalDeviceProperties(candidate, &properties);
-    const std::vector<std::string> missing = missing_in(candidate, properties);
+    const VkPhysicalDeviceProperties properties = properties_of(instance, candidate);
+    const std::vector<std::string> missing = missing_in(instance, candidate, properties);
     if (!missing.empty()) {
       refused.push_back(fmt::format("{} lacks {}", properties.deviceName, fmt::join(missing, ", ")));
     }
@@ -239,23 +372,11 @@ void VulkanContext::create_device()
     throw TransientError("Vulkan: {}",
                          refused.empty() ? "there is no device" : fmt::format("{}", fmt::join(refused, "; ")));
   }
-  VkPhysicalDeviceDriverProperties driver{};
-  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
-  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
-  vkGetPhysicalDeviceProperties2(physical_device, &properties);
-  limits = properties.properties.limits;
-  is_software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  const std::uint32_t version = properties.properties.apiVersion;
-  description = fmt::format("Vulkan {}.{}.{}, {} ({} {})", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
-                            VK_API_VERSION_PATCH(version), properties.properties.deviceName, driver.driverName,
-                            driver.driverInfo);
-  queue_family = *graphics_family(physical_device, timestamp_bits);
+  const std::vector<VkQueueFamilyProperties> families = queue_families(instance, physical_device);
+  queue_family = std::uint32_t(std::ranges::find_if(families, has_graphics) - families.begin());
 
   Features present;
-  vkGetPhysicalDeviceFeatures2(physical_device, &present.core);
-  has_geometry_shader = present.core.features.geometryShader == VK_TRUE;
-  has_anisotropy = present.core.features.samplerAnisotropy == VK_TRUE;
-  has_vertex_layer = present.v12.shaderOutputLayer == VK_TRUE;
+  instance.vkGetPhysicalDeviceFeatures2(physical_device, &present.core);
   Features used;
   for (const Features::Named &feature : used.required()) {
     *feature.value = VK_TRUE;
@@ -278,10 +399,29 @@ void VulkanContext::create_device()
   info.pQueueCreateInfos = &queues;
   info.enabledExtensionCount = 1;
   info.ppEnabledExtensionNames = &extension;
-  check(vkCreateDevice(physical_device, &info, nullptr, &device),
-        fmt::format("Vulkan: {}", properties.properties.deviceName));
-  volkLoadDeviceTable(&vk, device);
+  check(instance.vkCreateDevice(physical_device, &info, nullptr, &device),
+        fmt::format("Vulkan: {}", properties_of(instance, physical_device).deviceName));
+  load_device();
   vk.vkGetDeviceQueue(device, queue_family, 0, &queue);
+  describe(used.core.features, used.v12.shaderOutputLayer == VK_TRUE);
+}
+
+void VulkanContext::describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output)
+{
+  has_geometry_shader = enabled.geometryShader == VK_TRUE;
+  has_anisotropy = enabled.samplerAnisotropy == VK_TRUE;
+  has_vertex_layer = has_layer_output;
+  timestamp_bits = int(queue_families(instance, physical_device)[queue_family].timestampValidBits);
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
+  instance.vkGetPhysicalDeviceProperties2(physical_device, &properties);
+  limits = properties.properties.limits;
+  is_software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const std::uint32_t version = properties.properties.apiVersion;
+  description = fmt::format("Vulkan {}.{}.{}, {} ({} {})", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                            VK_API_VERSION_PATCH(version), properties.properties.deviceName, driver.driverName,
+                            driver.driverInfo);
 }
 
 VkBool32 VKAPI_PTR VulkanContext::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <volk.h>
+#include "vulkan_functions.hh"
+
+#include "gpu_vulkan_host.hh"
 
 #include <functional>
 #include <mutex>
@@ -11,17 +13,20 @@
 
 namespace gnomon::gpu {
 
-/** An instance with a device that has one queue, and the messages of the validation layers. */
+/** A device that has one queue, its own or the host's, and the messages of the validation layers. */
 class VulkanContext {
  public:
   /** \a sink: receives messages of the validation layers about the end of the device. \throws Error */
   VulkanContext(bool is_debug, std::function<void(std::string_view message)> sink);
+  /** The device of a host. \throws Error that names what it lacks */
+  explicit VulkanContext(const VulkanHost &host);
   ~VulkanContext();
   VulkanContext(const VulkanContext &) = delete;
   VulkanContext &operator=(const VulkanContext &) = delete;
 
+  VulkanInstanceTable instance{};
   /** The functions of the device. */
-  VolkDeviceTable vk{};
+  VulkanDeviceTable vk{};
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
@@ -36,6 +41,8 @@ class VulkanContext {
   /** Version, names of the device and the driver. */
   std::string description;
 
+  /** Uses the queue. */
+  [[nodiscard]] VkResult submit(const VkSubmitInfo2 &info);
   /** \throws Error that begins with \a what if \a result is a failure: TransientError, DeviceLost */
   void check(VkResult result, std::string_view what);
   /** For functions that do not throw: check_lost() throws afterwards if \a result says that the device is lost. */
@@ -62,17 +69,27 @@ class VulkanContext {
                                             const VkDebugUtilsMessengerCallbackDataEXT *data, void *user);
   void create_instance(bool is_debug);
   void create_device();
-  /** A function of an extension, which volk would have for the last instance only. */
+  /** Sets what follows from the physical device and from the features that are enabled. */
+  void describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output);
+  /** Load the functions of the instance, and of the device. \throws Error that names the first one that is missing */
+  void load_instance();
+  void load_device();
+  /** A function of the instance; nullptr: it has none of this name. */
   template <typename Function>
   [[nodiscard]] Function instance_function(const char *name) const
   {
-    return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance_, name));
+    return reinterpret_cast<Function>(loader_(instance_, name));
   }
   void label_object(VkObjectType type, std::uint64_t handle, const std::string &name);
   void destroy();
 
   std::function<void(std::string_view message)> sink_;
+  PFN_vkGetInstanceProcAddr loader_ = nullptr;
   VkInstance instance_ = VK_NULL_HANDLE;
+  /** The instance and the device are the host's. */
+  bool is_host_ = false;
+  std::function<void()> lock_queue_;
+  std::function<void()> unlock_queue_;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   /** nullptr: the device has no validation layers. */
   PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;

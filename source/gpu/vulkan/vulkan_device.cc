@@ -35,6 +35,7 @@ Limits limits_of(const VulkanContext &context)
       int(std::min(of.maxVertexOutputComponents, of.maxFragmentInputComponents) / components_of_location);
   limits.has_vertex_layer = context.has_vertex_layer;
   limits.has_geometry_shader = context.has_geometry_shader;
+  limits.has_specialization = true;
   return limits;
 }
 
@@ -94,7 +95,7 @@ void VulkanDevice::create_dummies()
     const TextureDesc desc{
         .name = "unbound", .kind = TextureKind::Array, .format = is_depth ? Format::Depth32F : Format::RGBA8};
     VulkanImage &image = dummies_.images[is_depth];
-    image = make_image(*context_, memory_, what, desc);
+    image = make_image(*context_, memory_, what, desc, vulkan_format(desc.format));
     dummies_.flat_views[is_depth] =
         make_view(*context_, what, image, image.format, VK_IMAGE_VIEW_TYPE_2D, {image.aspect, 0, 1, 0, 1});
     VkSamplerCreateInfo sampler{};
@@ -229,6 +230,9 @@ std::unique_ptr<Device> create_vulkan_device(const VulkanDeviceDesc &desc)
 {
   if (!desc.compile_spirv) {
     throw Error("Vulkan: the program has no compiler of shaders for it");
+  }
+  if (desc.host) {
+    return std::make_unique<VulkanDevice>(std::make_unique<VulkanContext>(*desc.host), desc);
   }
   return std::make_unique<VulkanDevice>(
       std::make_unique<VulkanContext>(desc.is_debug,

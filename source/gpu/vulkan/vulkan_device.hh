@@ -49,7 +49,23 @@ class VulkanDevice final : public Device {
     std::array<VkFormat, 2> formats{};
     std::uint32_t layers = 1;
   };
+  struct VulkanHostImage {
+    VulkanImage image;
+    /** Passes draw into it, if the host's rows are in the other order. */
+    std::optional<VulkanImage> turned;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+    /** Between begin_image and end_image. */
+    bool is_taken = false;
+
+    VulkanImage &drawn()
+    {
+      return turned ? *turned : image;
+    }
+  };
   struct VulkanFramebuffer {
+    std::string name;
+    /** Its only attachment, which is no texture; nullptr: the attachments are textures. */
+    std::shared_ptr<VulkanHostImage> host;
     std::vector<VulkanAttachment> colors;
     std::optional<VulkanAttachment> depth;
     glm::ivec2 size_px{0};
@@ -119,6 +135,8 @@ class VulkanDevice final : public Device {
   void texture_create(ResourceId id, const TextureDesc &desc) override;
   void sampler_create(ResourceId id, const SamplerDesc &desc) override;
   void framebuffer_create(ResourceId id, const FramebufferLayout &layout) override;
+  void host_framebuffer_create(ResourceId id, const std::string &name, const HostImage &image) override;
+  void image_take(const Operation::TakeImage &take) override;
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
@@ -138,6 +156,9 @@ class VulkanDevice final : public Device {
 
   [[nodiscard]] VulkanAttachment make_attachment(std::string_view what, const AttachmentLayout &layout);
   void destroy_attachment(const VulkanAttachment &attachment);
+  void destroy_framebuffer(const VulkanFramebuffer &framebuffer);
+  /** Copies all texels in the other order of rows. */
+  void turn(VulkanImage &from, VulkanImage &to);
   [[nodiscard]] VkSampler make_sampler(std::string_view what, const VkSamplerCreateInfo &info);
   void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
   /** Copies \a bytes to \a buffer, in the order of the commands. */
@@ -150,6 +171,9 @@ class VulkanDevice final : public Device {
   /** The textures that the draws of each pass of \a list look up. */
   [[nodiscard]] std::vector<PassTextures> textures_of_passes(const CommandList &list);
   void execute(const CommandList &list);
+  /** \throws Error if \a framebuffer of the host's image cannot be drawn into. */
+  static void check_host_image(std::string_view pass_name, const VulkanFramebuffer &framebuffer,
+                               const PassActions &actions);
   void begin_pass(std::string_view name, const CommandList::PassInfo &pass, const PassTextures &used);
   /** Copies the texture \a id for a pass that looks it up while it draws into it. */
   void copy_attachment(ResourceId id);

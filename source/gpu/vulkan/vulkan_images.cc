@@ -27,7 +27,12 @@ VkFormat vulkan_format(Format format)
 
 VkFormat unencoded(VkFormat format)
 {
-  return format == VK_FORMAT_R8G8B8A8_SRGB ? VK_FORMAT_R8G8B8A8_UNORM : format;
+  switch (format) {
+    case VK_FORMAT_R8G8B8A8_SRGB: return VK_FORMAT_R8G8B8A8_UNORM;
+    case VK_FORMAT_B8G8R8A8_SRGB: return VK_FORMAT_B8G8R8A8_UNORM;
+    case VK_FORMAT_A8B8G8R8_SRGB_PACK32: return VK_FORMAT_A8B8G8R8_UNORM_PACK32;
+    default: return format;
+  }
 }
 
 VkExtent3D extent_of(const VulkanImage &image, std::uint32_t level)
@@ -36,10 +41,11 @@ VkExtent3D extent_of(const VulkanImage &image, std::uint32_t level)
           1};
 }
 
-VulkanImage make_image(VulkanContext &context, VulkanMemory &memory, std::string_view what, const TextureDesc &desc)
+VulkanImage make_image(VulkanContext &context, VulkanMemory &memory, std::string_view what, const TextureDesc &desc,
+                       VkFormat format)
 {
   VulkanImage image;
-  image.format = vulkan_format(desc.format);
+  image.format = format;
   image.aspect = is_depth(desc.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
   image.size_px = {desc.width, desc.height};
   image.layers = std::uint32_t(desc.layers);

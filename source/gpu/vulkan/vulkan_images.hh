@@ -36,6 +36,12 @@ inline constexpr ImageUse depth{
     VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL,
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, true};
+/** Any work of the host. */
+inline constexpr ImageUse by_host(VkImageLayout layout)
+{
+  return {layout, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+          true};
+}
 inline constexpr ImageUse copied_from{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                       VK_ACCESS_2_TRANSFER_READ_BIT, false};
 inline constexpr ImageUse copied_to{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
@@ -59,9 +65,9 @@ struct VulkanImage {
 /** Size of a mip level. */
 [[nodiscard]] VkExtent3D extent_of(const VulkanImage &image, std::uint32_t level);
 
-/** \throws Error that begins with \a what */
+/** \a format: that of \a desc, or another one of colours. \throws Error that begins with \a what */
 [[nodiscard]] VulkanImage make_image(VulkanContext &context, VulkanMemory &memory, std::string_view what,
-                                     const TextureDesc &desc);
+                                     const TextureDesc &desc, VkFormat format);
 void destroy_image(VulkanContext &context, VulkanMemory &memory, const VulkanImage &image);
 
 /** \throws Error that begins with \a what */

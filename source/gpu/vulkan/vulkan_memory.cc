@@ -90,7 +90,7 @@ MemoryRange whole_atoms(const MemoryRange &range, VkDeviceSize atom_bytes, VkDev
 
 VulkanMemory::VulkanMemory(VulkanContext &context) : context_(context)
 {
-  vkGetPhysicalDeviceMemoryProperties(context.physical_device, &properties_);
+  context.instance.vkGetPhysicalDeviceMemoryProperties(context.physical_device, &properties_);
 }
 
 VulkanMemory::~VulkanMemory()

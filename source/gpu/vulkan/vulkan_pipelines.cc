@@ -92,11 +92,12 @@ std::uint32_t pipeline_state(State state)
   return std::uint32_t(state) & std::uint32_t(kept);
 }
 
-VulkanProgram::VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages)
+VulkanProgram::VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages,
+                             const std::vector<StageConstant> &constants)
     : context_(context), name_(std::move(name)), interface_(interface_of(name_, stages))
 {
   try {
-    create(stages);
+    create(stages, constants);
   }
   catch (...) {
     destroy();
@@ -121,7 +122,7 @@ void VulkanProgram::destroy()
   }
 }
 
-void VulkanProgram::create(const std::vector<SpirvStage> &stages)
+void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vector<StageConstant> &constants)
 {
   const std::string what = fmt::format("shader '{}'", name_);
   for (const SpirvStage &stage : stages) {
@@ -134,6 +135,19 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages)
     made.stage = vulkan_stage(stage.stage);
     made.pName = "main";
     context_.check(context_.vk.vkCreateShaderModule(context_.device, &info, nullptr, &made.module), what);
+    Constants &set = constants_.emplace_back();
+    for (const StageConstant &constant : constants) {
+      if (constant.stage == stage.stage) {
+        set.entries.push_back(
+            {constant.id, std::uint32_t(set.values.size() * sizeof(constant.value)), sizeof(constant.value)});
+        set.values.push_back(constant.value);
+      }
+    }
+    if (!set.entries.empty()) {
+      set.info = {std::uint32_t(set.entries.size()), set.entries.data(), set.values.size() * sizeof(std::int32_t),
+                  set.values.data()};
+      made.pSpecializationInfo = &set.info;
+    }
     stages_.push_back(made);
   }
   std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -203,7 +217,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   rasterization.lineWidth = 1.0F;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  samples.rasterizationSamples = key.samples;
   VkPipelineDepthStencilStateCreateInfo depth{};
   depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
   const auto color_count = std::uint32_t(std::ranges::find(key.colors, VK_FORMAT_UNDEFINED) - key.colors.begin());
@@ -215,7 +229,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   std::vector<VkDynamicState> dynamics = {
       VK_DYNAMIC_STATE_VIEWPORT,         VK_DYNAMIC_STATE_SCISSOR,           VK_DYNAMIC_STATE_CULL_MODE,
       VK_DYNAMIC_STATE_FRONT_FACE,       VK_DYNAMIC_STATE_DEPTH_TEST_ENABLE, VK_DYNAMIC_STATE_DEPTH_WRITE_ENABLE,
-      VK_DYNAMIC_STATE_DEPTH_COMPARE_OP,
+      VK_DYNAMIC_STATE_DEPTH_COMPARE_OP, VK_DYNAMIC_STATE_DEPTH_BIAS_ENABLE, VK_DYNAMIC_STATE_DEPTH_BIAS,
   };
   if (!inputs.bindings.empty()) {
     dynamics.push_back(VK_DYNAMIC_STATE_VERTEX_INPUT_BINDING_STRIDE);

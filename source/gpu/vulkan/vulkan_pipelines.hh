@@ -7,6 +7,7 @@
 
 #include <array>
 #include <compare>
+#include <deque>
 #include <map>
 #include <string>
 
@@ -20,6 +21,7 @@ struct PipelineKey {
   /** VK_FORMAT_UNDEFINED: there is no such attachment. */
   std::array<VkFormat, color_count_max> colors{};
   VkFormat depth = VK_FORMAT_UNDEFINED;
+  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
   /** Draws take vertices from no buffer, or instances from a buffer of objects. */
   bool is_procedural = false;
   bool has_objects = false;
@@ -37,7 +39,8 @@ inline constexpr std::uint32_t push_constant_bytes = 128;
 class VulkanProgram {
  public:
   /** \throws Error that names the shader \a name */
-  VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages);
+  VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages,
+                const std::vector<StageConstant> &constants);
   ~VulkanProgram();
   VulkanProgram(const VulkanProgram &) = delete;
   VulkanProgram &operator=(const VulkanProgram &) = delete;
@@ -58,7 +61,7 @@ class VulkanProgram {
   }
 
  private:
-  void create(const std::vector<SpirvStage> &stages);
+  void create(const std::vector<SpirvStage> &stages, const std::vector<StageConstant> &constants);
   void destroy();
   [[nodiscard]] VkPipeline make(const PipelineKey &key);
 
@@ -66,6 +69,13 @@ class VulkanProgram {
   std::string name_;
   SpirvInterface interface_;
   std::vector<VkPipelineShaderStageCreateInfo> stages_;
+  /** Values of the specialisation constants of a stage. `stages_` points to them. */
+  struct Constants {
+    std::vector<VkSpecializationMapEntry> entries;
+    std::vector<std::int32_t> values;
+    VkSpecializationInfo info{};
+  };
+  std::deque<Constants> constants_;
   VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
   std::map<PipelineKey, VkPipeline> pipelines_;

@@ -79,7 +79,7 @@ void VulkanDevice::texture_create(ResourceId id, const TextureDesc &desc)
     }
   }
   else {
-    texture.image = make_image(*context_, memory_, what, desc);
+    texture.image = make_image(*context_, memory_, what, desc, vulkan_format(desc.format));
   }
   textures_.insert(id, std::move(texture));
   check_made(ResourceKind::Texture, id, what);
@@ -172,13 +172,116 @@ void VulkanDevice::framebuffer_create(ResourceId id, const FramebufferLayout &la
     }
   }
   catch (...) {
-    for (const VulkanAttachment &color : framebuffer.colors) {
-      destroy_attachment(color);
-    }
+    destroy_framebuffer(framebuffer);
     throw;
   }
   framebuffers_.insert(id, std::move(framebuffer));
   check_made(ResourceKind::Framebuffer, id, what);
+}
+
+void VulkanDevice::host_framebuffer_create(ResourceId id, const std::string &name, const HostImage &image)
+{
+  const std::string what = fmt::format("framebuffer '{}' of the host's image", name);
+  const auto format = VkFormat(image.format);
+  const bool is_turned = image.rows == RowOrder::TopFirst;
+  VkFormatProperties properties{};
+  context_->instance.vkGetPhysicalDeviceFormatProperties(context_->physical_device, format, &properties);
+  const VkFormatFeatureFlags needed =
+      VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT |
+      (is_turned ? VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT : 0U);
+  if ((properties.optimalTilingFeatures & needed) != needed) {
+    throw Error("{}: the device cannot draw into VkFormat {}", what, image.format);
+  }
+  VulkanFramebuffer framebuffer;
+  framebuffer.size_px = image.size_px;
+  framebuffer.name = name;
+  VulkanHostImage &host = *(framebuffer.host = std::make_shared<VulkanHostImage>());
+  host.image.handle = image.image;
+  host.image.format = format;
+  host.image.size_px = image.size_px;
+  host.samples = VkSampleCountFlagBits(image.samples);
+  if (is_turned) {
+    const TextureDesc desc{.name = name, .width = image.size_px.x, .height = image.size_px.y};
+    host.turned = make_image(*context_, memory_, what, desc, format);
+  }
+  VulkanAttachment &color = framebuffer.colors.emplace_back();
+  // A host's image has no views of other formats than its own.
+  color.formats = {is_turned ? unencoded(format) : format, format};
+  const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  try {
+    color.views[0] = make_view(*context_, what, host.drawn(), color.formats[0], VK_IMAGE_VIEW_TYPE_2D, range);
+    color.views[1] = color.formats[1] == color.formats[0]
+                         ? color.views[0]
+                         : make_view(*context_, what, host.drawn(), format, VK_IMAGE_VIEW_TYPE_2D, range);
+  }
+  catch (...) {
+    destroy_framebuffer(framebuffer);
+    throw;
+  }
+  framebuffers_.insert(id, std::move(framebuffer));
+  check_made(ResourceKind::Framebuffer, id, what);
+}
+
+void VulkanDevice::destroy_framebuffer(const VulkanFramebuffer &framebuffer)
+{
+  for (const VulkanAttachment &color : framebuffer.colors) {
+    destroy_attachment(color);
+  }
+  if (framebuffer.depth) {
+    destroy_attachment(*framebuffer.depth);
+  }
+  if (framebuffer.host && framebuffer.host->turned) {
+    destroy_image(*context_, memory_, *framebuffer.host->turned);
+  }
+}
+
+void VulkanDevice::turn(VulkanImage &from, VulkanImage &to)
+{
+  VkCommandBuffer commands = submissions_.commands();
+  barriers_.before_use(from, use::copied_from);
+  barriers_.before_use(to, use::copied_to);
+  barriers_.record(commands);
+  const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  const auto [width, height] = std::pair(from.size_px.x, from.size_px.y);
+  const VkImageBlit blit{layers, {{0, height, 0}, {width, 0, 1}}, layers, {{0, 0, 0}, {width, height, 1}}};
+  context_->vk.vkCmdBlitImage(commands, from.handle, from.last_use.layout, to.handle, to.last_use.layout, 1, &blit,
+                              VK_FILTER_NEAREST);
+}
+
+void VulkanDevice::image_take(const Operation::TakeImage &take)
+{
+  VulkanFramebuffer &framebuffer = framebuffers_.at(take.framebuffer);
+  const std::string what = fmt::format("framebuffer '{}'", framebuffer.name);
+  if (!framebuffer.host) {
+    throw Error("{}: it has no image of the host", what);
+  }
+  VulkanHostImage &host = *framebuffer.host;
+  if (host.is_taken != take.is_end) {
+    throw Error("{}: begin_image and end_image do not alternate", what);
+  }
+  const auto layout = VkImageLayout(take.layout);
+  if (take.is_end) {
+    if (layout == VK_IMAGE_LAYOUT_UNDEFINED || layout == VK_IMAGE_LAYOUT_PREINITIALIZED) {
+      throw Error("{}: no image can be given back in VkImageLayout {}", what, take.layout);
+    }
+    if (host.turned) {
+      turn(*host.turned, host.image);
+    }
+    barriers_.before_use(host.image, use::by_host(layout));
+    barriers_.record(submissions_.commands());
+    submissions_.signal(take.semaphore);
+    host.is_taken = false;
+    submissions_.flush();
+  }
+  else {
+    host.image.last_use = use::by_host(layout);
+    submissions_.wait_for(take.semaphore);
+    host.is_taken = true;
+    if (host.turned && layout != VK_IMAGE_LAYOUT_UNDEFINED) {
+      turn(host.image, *host.turned);
+    }
+  }
+  check(what);
 }
 
 void VulkanDevice::buffer_create(ResourceId id, const BufferDesc &desc)
@@ -278,7 +381,7 @@ void VulkanDevice::shader_create(const Operation::CreateShader &create, std::vec
     stages = compile_(create.desc.name, create.stages);
     compiled = packed(stages);
   }
-  programs_.insert(create.id, std::make_shared<VulkanProgram>(*context_, create.desc.name, stages));
+  programs_.insert(create.id, std::make_shared<VulkanProgram>(*context_, create.desc.name, stages, create.constants));
   check_made(ResourceKind::Shader, create.id, fmt::format("shader '{}'", create.desc.name));
 }
 
@@ -308,14 +411,7 @@ void VulkanDevice::resource_destroy(ResourceKind kind, ResourceId id)
       samplers_.erase(id);
       break;
     case ResourceKind::Framebuffer:
-      submissions_.retire([this, framebuffer = framebuffers_.at(id)] {
-        for (const VulkanAttachment &color : framebuffer.colors) {
-          destroy_attachment(color);
-        }
-        if (framebuffer.depth) {
-          destroy_attachment(*framebuffer.depth);
-        }
-      });
+      submissions_.retire([this, framebuffer = framebuffers_.at(id)] { destroy_framebuffer(framebuffer); });
       framebuffers_.erase(id);
       break;
     case ResourceKind::Buffer:

@@ -56,6 +56,37 @@ VkCommandBuffer VulkanSubmissions::commands()
   return open_;
 }
 
+namespace {
+
+VkSemaphoreSubmitInfo submit_info(VkSemaphore semaphore, std::uint64_t value)
+{
+  VkSemaphoreSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+  info.semaphore = semaphore;
+  info.value = value;
+  info.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  return info;
+}
+
+void add(std::vector<VkSemaphoreSubmitInfo> &semaphores, const HostSemaphore &semaphore)
+{
+  if (semaphore.semaphore) {
+    semaphores.push_back(submit_info(semaphore.semaphore, semaphore.value));
+  }
+}
+
+}  // namespace
+
+void VulkanSubmissions::wait_for(const HostSemaphore &semaphore)
+{
+  add(waits_, semaphore);
+}
+
+void VulkanSubmissions::signal(const HostSemaphore &semaphore)
+{
+  add(signals_, semaphore);
+}
+
 void VulkanSubmissions::flush()
 {
   if (open_ == VK_NULL_HANDLE) {
@@ -68,34 +99,39 @@ void VulkanSubmissions::flush()
   VkCommandBufferSubmitInfo commands{};
   commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
   commands.commandBuffer = buffer;
-  VkSemaphoreSubmitInfo signal{};
-  signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-  signal.semaphore = timeline_;
-  signal.value = number;
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  const std::vector<VkSemaphoreSubmitInfo> waits = std::exchange(waits_, {});
+  std::vector<VkSemaphoreSubmitInfo> signals = std::exchange(signals_, {});
+  signals.push_back(submit_info(timeline_, number));
   VkSubmitInfo2 info{};
   info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &signal;
+  info.waitSemaphoreInfoCount = std::uint32_t(waits.size());
+  info.pWaitSemaphoreInfos = waits.data();
+  info.signalSemaphoreInfoCount = std::uint32_t(signals.size());
+  info.pSignalSemaphoreInfos = signals.data();
   // The layouts of images are known only if all submissions are executed, so that a device without one is lost.
-  if (recorded != VK_SUCCESS || context_.vk.vkQueueSubmit2(context_.queue, 1, &info, VK_NULL_HANDLE) != VK_SUCCESS) {
+  if (recorded != VK_SUCCESS || context_.submit(info) != VK_SUCCESS) {
     context_.check(VK_ERROR_DEVICE_LOST, "submit");
   }
+  accepted_ = number;
 }
 
 void VulkanSubmissions::wait(std::uint64_t number)
 {
   // A device that refused a submission never finishes it.
   context_.check_lost("wait");
+  context_.check(wait_result(number), "wait");
+}
+
+VkResult VulkanSubmissions::wait_result(std::uint64_t number)
+{
   VkSemaphoreWaitInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
   info.semaphoreCount = 1;
   info.pSemaphores = &timeline_;
   info.pValues = &number;
-  context_.check(context_.vk.vkWaitSemaphores(context_.device, &info, std::numeric_limits<std::uint64_t>::max()),
-                 "wait");
+  return context_.vk.vkWaitSemaphores(context_.device, &info, std::numeric_limits<std::uint64_t>::max());
 }
 
 void VulkanSubmissions::finish()
@@ -108,7 +144,7 @@ void VulkanSubmissions::finish()
 void VulkanSubmissions::end()
 {
   // A lost device has finished, too.
-  context_.vk.vkDeviceWaitIdle(context_.device);
+  static_cast<void>(wait_result(accepted_));
   for (const Retired &retired : std::exchange(retired_, {})) {
     retired.destroy();
   }

@@ -27,13 +27,20 @@ class VulkanSubmissions {
   {
     return number_;
   }
+  /** The open submission, or the next one, waits for a semaphore of the host before it begins. */
+  void wait_for(const HostSemaphore &semaphore);
+  /** It signals a semaphore of the host after all its work. */
+  void signal(const HostSemaphore &semaphore);
   /** Submit the open one. */
   void flush();
   /** Wait until the device has finished the submission \a number, which must be submitted. */
   void wait(std::uint64_t number);
   /** Submit the open one and wait for all. */
   void finish();
-  /** Wait for all that was submitted, also on a lost device, and destroy what was retired. */
+  /**
+   * Wait for all that was submitted, also on a lost device, and destroy what was retired. Does not wait for the device,
+   * because a host may be using its other queues.
+   */
   void end();
   /** Number of the last submission that the device has finished; 0 if the device is lost. */
   [[nodiscard]] std::uint64_t done();
@@ -49,6 +56,7 @@ class VulkanSubmissions {
     std::uint64_t number = 0;
     std::function<void()> destroy;
   };
+  [[nodiscard]] VkResult wait_result(std::uint64_t number);
   /** Destroys what the device no longer uses. */
   void collect();
 
@@ -56,6 +64,11 @@ class VulkanSubmissions {
   VkCommandPool pool_ = VK_NULL_HANDLE;
   VkSemaphore timeline_ = VK_NULL_HANDLE;
   std::uint64_t number_ = 1;
+  /** Number of the last one that the device has accepted; 0: none. */
+  std::uint64_t accepted_ = 0;
+  /** Of the open submission. */
+  std::vector<VkSemaphoreSubmitInfo> waits_;
+  std::vector<VkSemaphoreSubmitInfo> signals_;
   VkCommandBuffer open_ = VK_NULL_HANDLE;
   std::deque<Commands> running_;
   std::vector<VkCommandBuffer> unused_;

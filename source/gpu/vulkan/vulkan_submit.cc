@@ -201,12 +201,33 @@ void VulkanDevice::execute(const CommandList &list)
   }
 }
 
+void VulkanDevice::check_host_image(std::string_view pass_name, const VulkanFramebuffer &framebuffer,
+                                    const PassActions &actions)
+{
+  const auto refuse = [&](std::string_view why) {
+    throw Error("pass '{}': framebuffer '{}' of the host's image {}", pass_name, framebuffer.name, why);
+  };
+  if (!framebuffer.host->is_taken) {
+    refuse("is drawn into outside of begin_image and end_image");
+  }
+  const bool is_srgb = unencoded(framebuffer.host->image.format) != framebuffer.host->image.format;
+  if (actions.is_srgb_encoded && !is_srgb) {
+    refuse("has no sRGB format, which would encode the colours");
+  }
+  if (!actions.is_srgb_encoded && is_srgb && !framebuffer.host->turned) {
+    refuse("has an sRGB format, which encodes the colours");
+  }
+}
+
 void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pass, const PassTextures &used)
 {
   if (pass.host_framebuffer) {
     throw Error("pass '{}': a device of Vulkan has no framebuffers of the host", name);
   }
   const VulkanFramebuffer &framebuffer = framebuffers_.at(pass.framebuffer);
+  if (framebuffer.host) {
+    check_host_image(name, framebuffer, pass.actions);
+  }
   const PassActions &actions = pass.actions;
   VkCommandBuffer commands = submissions_.commands();
   // Those that are looked up while they are drawn into are copied first.
@@ -225,8 +246,9 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
   const bool is_encoded = actions.is_srgb_encoded;
   std::vector<VkRenderingAttachmentInfo> colors;
   list_.pipeline.colors = {};
+  list_.pipeline.samples = framebuffer.host ? framebuffer.host->samples : VK_SAMPLE_COUNT_1_BIT;
   for (const VulkanAttachment &color : framebuffer.colors) {
-    VulkanImage &image = textures_.at(color.texture).image;
+    VulkanImage &image = framebuffer.host ? framebuffer.host->drawn() : textures_.at(color.texture).image;
     barriers_.before_use(image, use::color);
     list_.pipeline.colors[colors.size()] = color.formats[is_encoded];
     VkRenderingAttachmentInfo &info = colors.emplace_back();
@@ -268,6 +290,9 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
       float(area.offset.x), float(area.offset.y), float(area.extent.width), float(area.extent.height), 0.0F, 1.0F};
   context_->vk.vkCmdSetViewport(commands, 0, 1, &viewport);
   context_->vk.vkCmdSetScissor(commands, 0, 1, &scissor);
+  const DepthBias &bias = actions.depth_bias;
+  context_->vk.vkCmdSetDepthBiasEnable(commands, bias != DepthBias() ? VK_TRUE : VK_FALSE);
+  context_->vk.vkCmdSetDepthBias(commands, bias.constant, 0.0F, bias.slope);
   list_.has_new_bindings = true;
 }
 
@@ -275,7 +300,8 @@ void VulkanDevice::copy_attachment(ResourceId id)
 {
   VulkanTexture &texture = textures_.at(id);
   if (!texture.copy) {
-    texture.copy = make_image(*context_, memory_, fmt::format("copy of texture '{}'", texture.desc.name), texture.desc);
+    texture.copy = make_image(*context_, memory_, fmt::format("copy of texture '{}'", texture.desc.name), texture.desc,
+                              vulkan_format(texture.desc.format));
   }
   VulkanImage &image = texture.image;
   VkCommandBuffer commands = submissions_.commands();

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: MIT
+// A device on the VkDevice of a host, and draws into the host's images. The host uses the validation layers with checks
+// of synchronisation and of threads, and their messages are failures. These need no GNOMON_TEST_BACKEND.
+#include "gpu/gpu_testing.hh"
+#include "gpu/gpu_vulkan_host.hh"
+#include "gpu_create_device.hh"
+#include "gpu_device_fixture.hh"
+#include "vulkan/vulkan_device.hh"
+
+#include <atomic>
+#include <memory>
+#include <thread>
+
+namespace gnomon::gpu {
+namespace {
+
+using test::error_of;
+using test::expect_contains;
+using test::VulkanTestHost;
+using Texel = std::array<std::uint8_t, 4>;
+
+class VulkanHostGpu : public testing::Test {
+ protected:
+  void SetUp() override
+  {
+    const auto device = test::testing_device("vulkan");
+    if (!device && !HasFailure()) {
+      GTEST_SKIP();
+    }
+    ASSERT_TRUE(device);
+    host = std::make_unique<VulkanTestHost>();
+  }
+  [[nodiscard]] std::unique_ptr<Device> make_device() const
+  {
+    return make_device(host->handles());
+  }
+  [[nodiscard]] static std::unique_ptr<Device> make_device(const VulkanHost &handles)
+  {
+    return create_vulkan_device({.compile_spirv = shader_check::compile_spirv, .host = handles});
+  }
+
+  std::unique_ptr<VulkanTestHost> host;
+};
+
+/** A pass that writes x and y of each pixel of a rectangle: red and green are the pixel over 255. */
+class Picture {
+ public:
+  explicit Picture(Device &device) : device_(device) {}
+
+  [[nodiscard]] CommandList list(const Framebuffer &framebuffer, const PassActions &actions) const
+  {
+    CommandList commands;
+    commands.begin_pass("picture", framebuffer, actions);
+    commands.set_shader(shader_.id());
+    commands.set_state(State::WriteColor);
+    test::append_draw(commands, full_);
+    commands.end_pass();
+    return commands;
+  }
+
+ private:
+  Device &device_;
+  Batch full_ = test::full_triangle(device_, 0.5F);
+  Shader shader_ = test::make_shader(device_, "pixels", test::CLIP_SPACE_VERT, R"(
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(floor(gl_FragCoord.xy) / 255.0, 0.0, 1.0);
+})");
+};
+
+constexpr glm::ivec2 size_px{6, 4};
+/** Of the host, before draws. */
+constexpr std::array<float, 4> before = {0.2F, 0.4F, 0.6F, 0.8F};
+constexpr Texel before_bytes = {51, 102, 153, 204};
+
+/** What Picture writes to the pixel of a row from the bottom. */
+Texel drawn(int x, int y)
+{
+  return {std::uint8_t(x), std::uint8_t(y), 0, 255};
+}
+
+TEST_F(VulkanHostGpu, DrawsIntoARectangleInEitherOrderOfRowsAndKeepsTheRest)
+{
+  const auto device = make_device();
+  const Picture picture(*device);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  for (const RowOrder rows : {RowOrder::TopFirst, RowOrder::BottomFirst}) {
+    const Framebuffer framebuffer =
+        device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px, 1, rows});
+    host->clear(image, before);
+    device->begin_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    const Rectangle rectangle{{1, 0}, {3, 2}};
+    device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load, .scissor = rectangle}));
+    device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    const std::vector<Texel> texels = host->read(image);
+    for (int row = 0; row < size_px.y; row++) {
+      for (int x = 0; x < size_px.x; x++) {
+        const int y = rows == RowOrder::TopFirst ? size_px.y - 1 - row : row;
+        const bool is_inside = x >= 1 && x < 4 && y < 2;
+        EXPECT_EQ(texels[std::size_t(row * size_px.x + x)], is_inside ? drawn(x, y) : before_bytes)
+            << x << ' ' << y << (rows == RowOrder::TopFirst ? " from the top" : "");
+      }
+    }
+  }
+  host->destroy(image);
+}
+
+TEST_F(VulkanHostGpu, FormatsHaveTheirOrderOfChannelsAndTheirEncoding)
+{
+  const auto device = make_device();
+  for (const bool is_srgb : {false, true}) {
+    const VkFormat format = is_srgb ? VK_FORMAT_B8G8R8A8_SRGB : VK_FORMAT_B8G8R8A8_UNORM;
+    const VulkanTestHost::Image image = host->make_image(format, size_px.x, size_px.y);
+    const Framebuffer framebuffer = device->create_framebuffer("theirs", HostImage{image.image, format, size_px});
+    device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+    CommandList list;
+    list.begin_pass("clear", framebuffer, {.clear_color = {1, 0.5F, 0, 1}, .is_srgb_encoded = is_srgb});
+    list.end_pass();
+    device->submit(list);
+    device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    for (const Texel &texel : host->read(image)) {
+      // Half of the light is 188 of 255 in sRGB.
+      EXPECT_NEAR(texel[1], is_srgb ? 188 : 128, 1);
+      EXPECT_EQ(texel[0], 0);
+      EXPECT_EQ(texel[2], 255);
+    }
+    host->destroy(image);
+  }
+}
+
+TEST_F(VulkanHostGpu, EachSampleOfAnImageIsDrawn)
+{
+  const auto device = make_device();
+  const Picture picture(*device);
+  const VulkanTestHost::Image image =
+      host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y, VK_SAMPLE_COUNT_4_BIT);
+  const VulkanTestHost::Image resolved = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const Framebuffer framebuffer = device->create_framebuffer(
+      "theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px, 4, RowOrder::BottomFirst});
+  device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+  device->submit(picture.list(framebuffer, {}));
+  device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  host->clear(resolved, before);
+  host->submit([&](VkCommandBuffer commands) {
+    VkImageResolve region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.extent = {std::uint32_t(size_px.x), std::uint32_t(size_px.y), 1};
+    host->of_device<PFN_vkCmdResolveImage>("vkCmdResolveImage")(commands, image.image,
+                                                                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, resolved.image,
+                                                                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    host->change_layout(commands, resolved, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  });
+  const std::vector<Texel> texels = host->read(resolved);
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x++) {
+      EXPECT_EQ(texels[std::size_t(y * size_px.x + x)], drawn(x, y));
+    }
+  }
+  host->destroy(resolved);
+  host->destroy(image);
+}
+
+/** A semaphore that nobody waits for, or that is not signalled, is a message of the layers in the next frame. */
+TEST_F(VulkanHostGpu, WaitsForAndSignalsTheSemaphoresOfEachFrame)
+{
+  const auto device = make_device();
+  const Picture picture(*device);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const Framebuffer framebuffer =
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+  const VkSemaphore acquired = host->make_semaphore(false);
+  const VkSemaphore binary = host->make_semaphore(false);
+  const VkSemaphore timeline = host->make_semaphore(true);
+  for (std::uint64_t frame = 1; frame <= 4; frame++) {
+    const HostSemaphore done = frame % 2 == 0 ? HostSemaphore{timeline, frame} : HostSemaphore{binary};
+    host->clear(image, before, {acquired});
+    Packet packet;
+    {
+      // As a thread that prepares frames does.
+      const Recording recording(*device, packet);
+      device->begin_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, {acquired});
+      device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load, .scissor = {{0, 0}, {1, 1}}}));
+      device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load, .scissor = {{5, 3}, {1, 1}}}));
+      device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, done);
+    }
+    device->submit(packet);
+    const std::vector<Texel> texels = host->read(image, done);
+    EXPECT_EQ(texels[std::size_t(3 * size_px.x)], drawn(0, 0));
+    EXPECT_EQ(texels[5], drawn(5, 3));
+    EXPECT_EQ(texels[0], before_bytes);
+  }
+  std::uint64_t value = 0;
+  host->of_device<PFN_vkGetSemaphoreCounterValue>("vkGetSemaphoreCounterValue")(host->device, timeline, &value);
+  EXPECT_EQ(value, 4U);
+  device->finish();
+  host->destroy(acquired);
+  host->destroy(binary);
+  host->destroy(timeline);
+  host->destroy(image);
+}
+
+/** The layers report a queue that two threads use at once. */
+TEST_F(VulkanHostGpu, AnotherThreadMayUseTheQueueUnderItsLock)
+{
+  std::mutex queue_mutex;
+  std::atomic<int> locks = 0;
+  VulkanHost handles = host->handles();
+  handles.lock_queue = [&] {
+    queue_mutex.lock();
+    locks++;
+  };
+  handles.unlock_queue = [&] { queue_mutex.unlock(); };
+  const auto device = make_device(handles);
+  const Picture picture(*device);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const VulkanTestHost::Image other = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const Framebuffer framebuffer =
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+  std::atomic<bool> is_done = false;
+  std::atomic<int> cleared = 0;
+  std::thread thread([&] {
+    while (!is_done) {
+      const std::scoped_lock lock(queue_mutex);
+      host->clear(other, before);
+      cleared++;
+    }
+  });
+  constexpr int frame_count = 50;
+  for (int frame = 0; frame < frame_count || cleared < frame_count; frame++) {
+    device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+    device->submit(picture.list(framebuffer, {}));
+    device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    device->finish();
+  }
+  is_done = true;
+  thread.join();
+  EXPECT_GE(locks, frame_count);
+  EXPECT_EQ(host->read(image)[std::size_t(3 * size_px.x + 2)], drawn(2, 0));
+  host->destroy(other);
+  host->destroy(image);
+}
+
+TEST_F(VulkanHostGpu, DevicesStandBesideEachOtherAndTheHostsRemainsAfterThem)
+{
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  {
+    const auto first = make_device();
+    const auto second = make_device();
+    for (Device *device : {first.get(), second.get(), first.get()}) {
+      const Framebuffer framebuffer =
+          device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+      device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+      device->submit(Picture(*device).list(framebuffer, {}));
+      device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+      EXPECT_EQ(host->read(image)[0], drawn(0, 3));
+    }
+    expect_contains(first->description(), "Vulkan 1.");
+  }
+  host->clear(image, before);
+  host->destroy(image);
+}
+
+VkResult VKAPI_PTR lose(VkQueue /*queue*/, std::uint32_t /*count*/, const VkSubmitInfo2 * /*infos*/, VkFence /*fence*/)
+{
+  return VK_ERROR_DEVICE_LOST;
+}
+
+TEST_F(VulkanHostGpu, ALostDeviceIsAnErrorUntilTheHostMakesAnother)
+{
+  auto made = std::make_unique<VulkanContext>(host->handles());
+  made->vk.vkQueueSubmit2 = &lose;
+  auto device =
+      std::make_unique<VulkanDevice>(std::move(made), VulkanDeviceDesc{.compile_spirv = shader_check::compile_spirv});
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const HostImage theirs{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px};
+  {
+    const Framebuffer framebuffer = device->create_framebuffer("theirs", theirs);
+    device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+    EXPECT_THROW(device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL), DeviceLost);
+    expect_contains(error_of([&] { device->finish(); }), "lost; create a new device");
+  }
+  device.reset();
+  const auto another = make_device();
+  {
+    const Framebuffer framebuffer = another->create_framebuffer("theirs", theirs);
+    another->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+    another->submit(Picture(*another).list(framebuffer, {}));
+    another->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  }
+  EXPECT_EQ(host->read(image)[0], drawn(0, 3));
+  host->destroy(image);
+}
+
+TEST_F(VulkanHostGpu, ImagesAreRefusedByNameAndTheDeviceRemainsUsable)
+{
+  const auto device = make_device();
+  const Picture picture(*device);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_SRGB, size_px.x, size_px.y);
+  const HostImage good{image.image, VK_FORMAT_R8G8B8A8_SRGB, size_px, 1, RowOrder::BottomFirst};
+  const auto refused = [&](auto &&change, std::string_view part) {
+    HostImage changed = good;
+    change(changed);
+    const std::string message = error_of([&] { static_cast<void>(device->create_framebuffer("theirs", changed)); });
+    expect_contains(message, "framebuffer 'theirs'");
+    expect_contains(message, part);
+  };
+  refused([](HostImage &i) { i.image = nullptr; }, "no image");
+  refused([](HostImage &i) { i.size_px = {0, 4}; }, "0x4");
+  refused([](HostImage &i) { i.format = VK_FORMAT_D32_SFLOAT; }, "VkFormat 126");
+  refused(
+      [](HostImage &i) {
+        i.samples = 4;
+        i.rows = RowOrder::TopFirst;
+      },
+      "4 samples");
+  const Framebuffer framebuffer = device->create_framebuffer("theirs", good);
+  const auto fails = [&](auto &&action, std::string_view part) {
+    const std::string message = error_of(action);
+    expect_contains(message, "framebuffer 'theirs'");
+    expect_contains(message, part);
+  };
+  const PassActions encoded{.is_srgb_encoded = true};
+  fails([&] { device->submit(picture.list(framebuffer, encoded)); }, "outside of begin_image");
+  fails([&] { device->end_image(framebuffer, VK_IMAGE_LAYOUT_GENERAL); }, "do not alternate");
+  device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+  fails([&] { device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED); }, "do not alternate");
+  fails([&] { device->end_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED); }, "VkImageLayout 0");
+  fails([&] { device->submit(picture.list(framebuffer, {})); }, "encodes the colours");
+  device->submit(picture.list(framebuffer, encoded));
+  device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  EXPECT_EQ(host->read(image).size(), 24U);
+  host->destroy(image);
+}
+
+TEST_F(VulkanHostGpu, WhatTheDeviceLacksIsListedByName)
+{
+  const auto refusal = [](std::string_view missing) {
+    const VulkanTestHost host(missing);
+    return error_of([&] {
+      static_cast<void>(create_vulkan_device({.compile_spirv = shader_check::compile_spirv, .host = host.handles()}));
+    });
+  };
+  EXPECT_EQ(refusal({}), "");
+  for (const char *name : {"multiDrawIndirect", "hostQueryReset", "provokingVertexLast"}) {
+    EXPECT_TRUE(refusal(name).ends_with(std::string("is made without ") + name)) << refusal(name);
+  }
+  // Without the extension, its feature is missing, too.
+  expect_contains(refusal(VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME),
+                  "is made without VK_EXT_provoking_vertex, provokingVertexLast");
+  expect_contains(
+      error_of([] {
+        static_cast<void>(create_vulkan_device({.compile_spirv = shader_check::compile_spirv, .host = VulkanHost{}}));
+      }),
+      "loader");
+}
+
+TEST_F(VulkanHostGpu, TheBackendIsTheHosts)
+{
+  const auto create = [&](Backend backend) {
+    return create_device({.backend = backend, .host = host->handles(), .compile_spirv = shader_check::compile_spirv});
+  };
+  expect_contains(create(Backend::Auto)->description(), "Vulkan");
+  expect_contains(create(Backend::Vulkan)->description(), "Vulkan");
+  expect_contains(error_of([&] { create(Backend::OpenGl); }), "backend 'gl': the host's is 'vulkan'");
+}
+
+}  // namespace
+}  // namespace gnomon::gpu
