@@ -327,9 +327,9 @@ class Export:
     def finish(self):
         render = self.scene.render
         transform, exposure = view_of(self.scene, self.report)
-        scale = render.resolution_percentage / 100
+        width, height = engine.picture_size(render)
         command = ['gnomon', 'render', os.path.basename(self.path), '-o', 'picture.png', '--size',
-                   f"{int(render.resolution_x * scale)}x{int(render.resolution_y * scale)}", '--view', transform,
+                   f"{width}x{height}", '--view', transform,
                    '--background', 'none' if render.film_transparent else 'world']
         if exposure != 0:
             command += ['--exposure', f"{exposure:.6g}"]
