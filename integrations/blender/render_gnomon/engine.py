@@ -13,7 +13,7 @@ import tempfile
 import bpy
 import numpy
 
-from . import settings
+from . import settings, viewport
 
 EXPORT = os.path.join(os.path.dirname(__file__), 'export_scene.py')
 
@@ -96,7 +96,7 @@ class GnomonEngine(bpy.types.RenderEngine):
     bl_idname = 'GNOMON'
     bl_label = "Gnomon"
     bl_use_preview = False
-    # The viewport is EEVEE's.
+    # Material Preview is EEVEE's.
     bl_use_eevee_viewport = True
 
     def render(self, depsgraph):
@@ -160,6 +160,22 @@ class GnomonEngine(bpy.types.RenderEngine):
             written[each.name].rect = values_of(each, layer[height - top:height - bottom, left:right])
         self.end_result(result)
 
+    def view_update(self, context, depsgraph):
+        if settings.gnomon is None:
+            self.update_stats("Gnomon", f"its Python module is not installed for Blender's Python: {settings.MISSING}")
+            return
+        if getattr(self, 'viewport', None) is None:
+            self.viewport = viewport.Viewport()
+        self.viewport.update(context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        if getattr(self, 'viewport', None) is not None:
+            self.viewport.draw(self, context, depsgraph)
+
+    def __del__(self):
+        if getattr(self, 'viewport', None) is not None:
+            self.viewport.end()
+
     def update_render_passes(self, scene, layer):
         for each in PASSES:
             if each.is_of(layer):
@@ -197,6 +213,7 @@ def register():
 
 
 def unregister():
+    viewport.end_all()
     for panel in shared_panels():
         panel.COMPAT_ENGINES.discard('GNOMON')
     for each in reversed(CLASSES):

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: MIT
+"""What a depsgraph of Blender shows, as mirror.Content: arrays and numbers that another thread may read."""
+
+import numpy
+from mathutils import Matrix
+
+from . import closed, lamps, materials
+from .mirror import Content, Node, Part
+
+FILE_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
+# Reflectance of a dielectric at normal incidence, of which Gnomon's specular colour is a factor.
+DIELECTRIC_F0 = 0.04
+MATERIAL = {'base_color': (1.0, 1.0, 1.0), 'base_color_texture': None, 'metallic': 0.0, 'roughness': 0.5, 'metallic_roughness_texture': None,
+            'normal_texture': None, 'normal_scale': 1.0, 'specular': 1.0, 'specular_color': (1.0, 1.0, 1.0), 'coat': 0.0, 'coat_roughness': 0.0,
+            'emissive': (0.0, 0.0, 0.0), 'emissive_texture': None, 'transmission': 0.0, 'ior': 1.5, 'thickness': 0.0, 'attenuation_color': (1.0, 1.0, 1.0),
+            'attenuation_distance': 0.0, 'alpha': 1.0, 'alpha_mode': 'OPAQUE',
+            'alpha_cutoff': 0.5}
+
+
+def matrix_of(matrix):
+    """A matrix of Blender's world in Gnomon's, which has +Y up."""
+    return numpy.array(FILE_FROM_BLENDER @ matrix)
+
+
+def numbers(collection, attribute, width, kind=numpy.float32):
+    values = numpy.empty(width * len(collection), kind)
+    collection.foreach_get(attribute, values)
+    return values.reshape(-1, width) if width > 1 else values
+
+
+def parts_of(mesh, slots):
+    """A Part for each material of a mesh; vertices are its face corners. slots: (name of the material or None, whether light passes it).
+
+    Keys of materials are (name, thickness of the body, m).
+    """
+    if hasattr(mesh, 'calc_normals_split'):
+        mesh.calc_normals_split()
+        normals = numbers(mesh.loops, 'normal', 3)
+    else:
+        # 4.1 and later.
+        normals = numbers(mesh.corner_normals, 'vector', 3)
+    mesh.calc_loop_triangles()
+    positions = numbers(mesh.vertices, 'co', 3)
+    vertices = numbers(mesh.loops, 'vertex_index', 1, numpy.int32)
+    triangles = numbers(mesh.loop_triangles, 'loops', 3, numpy.int32)
+    indices = numbers(mesh.loop_triangles, 'material_index', 1, numpy.int32)
+    layer = next((each for each in mesh.uv_layers if each.active_render), None)
+    uvs = None
+    if layer is not None:
+        uvs = numbers(layer.data, 'uv', 2)
+        uvs[:, 1] = 1 - uvs[:, 1]
+    parts = []
+    for index in numpy.unique(indices):
+        own = triangles[indices == index]
+        corners, own = numpy.unique(own, return_inverse=True)
+        arrays = {'positions': positions[vertices[corners]], 'normals': normals[corners],
+                  'triangles': own.reshape(-1, 3).astype(numpy.uint32)}
+        if uvs is not None:
+            arrays['uvs'] = uvs[corners]
+        name, is_glass = slots[min(index, len(slots) - 1)] if slots else (None, False)
+        thickness = closed.mean_chord(arrays['positions'], arrays['triangles']) if is_glass else None
+        parts.append(Part(arrays, name and (name, round(thickness or 0.0, 6))))
+    return parts
+
+
+class Collector:
+    """Reads depsgraphs of one viewport. Meshes and images are read again only if an update names them."""
+
+    def __init__(self):
+        self.meshes = {}
+        self.images = {}
+        # Properties of the materials of one depsgraph, by name.
+        self.materials = {}
+        self.remarks = []
+
+    def forget(self, depsgraph):
+        """Forgets what the updates of a depsgraph changed."""
+        changed = {update.id.name for update in depsgraph.updates if update.is_updated_geometry}
+        for key in [key for key in self.meshes if changed & set(key[0])]:
+            del self.meshes[key]
+        for update in depsgraph.updates:
+            if update.id.bl_rna.identifier == 'Image':
+                self.images = {key: value for key, value in self.images.items() if update.id.name not in key}
+
+    def content(self, depsgraph, space=None):
+        """The Content of a depsgraph. space: a SpaceView3D, for its local view. The world is left out."""
+        self.forget(depsgraph)
+        self.remarks = []
+        self.materials = {}
+        content = Content()
+        seen_meshes = {}
+        for instance in depsgraph.object_instances:
+            thing = instance.object
+            shown = (instance.parent or thing).original
+            if not instance.show_self or (space is not None and space.local_view and not shown.local_view_get(space)):
+                continue
+            key = (thing.original.name_full, *((shown.name_full, *instance.persistent_id) if instance.is_instance else ()))
+            matrix = matrix_of(instance.matrix_world)
+            if thing.type == 'LIGHT':
+                self.add_lamp(content, key, thing, matrix)
+            elif thing.type in WITH_SURFACE:
+                mesh = self.mesh_of(thing, content)
+                if mesh is not None:
+                    seen_meshes[mesh] = self.meshes[mesh]
+                    self.add_materials(self.meshes[mesh], content)
+                    content.nodes[key] = Node(matrix, mesh=mesh, casts_shadow=thing.visible_shadow)
+            elif thing.type not in ('EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'):
+                self.remark(f"object '{thing.name}': objects of the kind {thing.type} are not drawn")
+        # Those that are hidden for a time stay in self.meshes.
+        content.meshes = seen_meshes
+        self.images = {key: value for key, value in self.images.items() if key in content.textures}
+        return content
+
+    def remark(self, text):
+        if text not in self.remarks:
+            self.remarks.append(text)
+
+    def mesh_of(self, thing, content):
+        """The key of an object's mesh, which is in self.meshes; None if it has no triangles."""
+        data = thing.data
+        slots = [slot.material for slot in thing.material_slots]
+        names = tuple(self.material_of(material.original, content) if material else (None, False) for material in slots)
+        key = ((thing.original.name, data.original.name if data.original else ''), data.as_pointer(), names)
+        if not thing.modifiers and thing.type == 'MESH':
+            # Objects that share a mesh share its copy.
+            key = ((data.original.name,), data.as_pointer(), names)
+        if key not in self.meshes:
+            mesh = thing.to_mesh()
+            self.meshes[key] = [] if mesh is None or not mesh.polygons else parts_of(mesh, names)
+            thing.to_mesh_clear()
+        return key if self.meshes[key] else None
+
+    def add_lamp(self, content, key, thing, matrix):
+        lamp = thing.data
+        name = lamp.original.name_full
+        if name not in content.lamps:
+            values, remarks = lamps.properties_of(lamp)
+            for remark in remarks:
+                self.remark(f"lamp '{thing.name}': {remark}")
+            values['shadow_kind'] = None if lamp.use_shadow else 'NONE'
+            content.lamps[name] = values
+        if content.lamps[name]['intensity'] > 0:
+            content.nodes[key] = Node(matrix, lamp=name)
+
+    def material_of(self, material, content):
+        """(name, whether light passes it)"""
+        name = material.name_full
+        if name not in self.materials:
+            for remark in materials.remarks_of(material):
+                self.remark(f"material '{name}': {remark}")
+            values = self.properties_of(material, content)
+            if values['transmission'] > 0 and (absorption := materials.absorption(material)) is not None:
+                values['attenuation_color'], values['attenuation_distance'] = absorption
+            self.materials[name] = values
+        return name, self.materials[name]['transmission'] > 0
+
+    def add_materials(self, parts, content):
+        for part in parts:
+            if part.material is not None and part.material not in content.materials:
+                name, thickness = part.material
+                content.materials[part.material] = {**self.materials[name], 'thickness': thickness}
+
+    def properties_of(self, material, content):
+        values = {**MATERIAL, 'name': material.name, 'is_double_sided': not material.use_backface_culling}
+        output = materials.output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+        if not material.use_nodes:
+            return {**values, 'base_color': tuple(material.diffuse_color[:3]), 'metallic': material.metallic, 'roughness': material.roughness}
+        node = materials.source_of(output.inputs['Surface']) if output else None
+        if node is None:
+            return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
+        if node.type in ('EMISSION', 'BACKGROUND'):
+            color = node.inputs['Color'].default_value[:3]
+            strength = node.inputs['Strength'].default_value
+            return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0, 'emissive': tuple(max(c * strength, 0.0) for c in color)}
+        if node.type == 'BSDF_DIFFUSE':
+            return {**values, 'specular': 0.0, **self.color_of(node.inputs['Color'], content)}
+        if node.type != 'BSDF_PRINCIPLED':
+            return {**values, 'base_color': tuple(material.diffuse_color[:3])}
+        return {**values, **self.principled(node, material, content)}
+
+    def color_of(self, socket, content):
+        image = image_of(socket)
+        if image is None:
+            return {'base_color': tuple(clamped(c) for c in socket.default_value[:3])}
+        return {'base_color': (1.0, 1.0, 1.0), 'base_color_texture': self.texture([(image, None)], content)}
+
+    def principled(self, node, material, content):
+        def socket(*names):
+            return next((node.inputs[name] for name in names if name in node.inputs), None)
+
+        def number(default, *names):
+            found = socket(*names)
+            return default if found is None else found.default_value
+
+        values = self.color_of(node.inputs['Base Color'], content)
+        metallic, roughness = image_of(node.inputs['Metallic']), image_of(node.inputs['Roughness'])
+        values['metallic'] = 1.0 if metallic else clamped(number(0.0, 'Metallic'))
+        values['roughness'] = 1.0 if roughness else clamped(number(0.5, 'Roughness'))
+        if metallic or roughness:
+            channels = [(roughness, channel_of(node.inputs['Roughness'])), (metallic, channel_of(node.inputs['Metallic']))]
+            values['metallic_roughness_texture'] = self.texture([(None, None), *channels], content)
+        transmission = clamped(number(0.0, 'Transmission', 'Transmission Weight'))
+        ior = max(number(1.45, 'IOR'), 1.0)
+        f0 = ((ior - 1) / (ior + 1))**2
+        level = 0.08 * number(0.5, 'Specular') if 'Specular' in node.inputs else 2 * f0 * number(0.5, 'Specular IOR Level')
+        values['specular_color'] = 3 * (max((1 - transmission) * level + transmission * f0, 0.0) / DIELECTRIC_F0,)
+        if transmission > 0:
+            values.update(transmission=transmission, ior=ior)
+        coat = clamped(number(0.0, 'Clearcoat', 'Coat Weight'))
+        if coat > 0:
+            values.update(coat=coat, coat_roughness=clamped(number(0.03, 'Clearcoat Roughness', 'Coat Roughness')))
+        emission = socket('Emission', 'Emission Color')
+        strength = max(number(1.0, 'Emission Strength'), 0.0)
+        image = image_of(emission)
+        values['emissive'] = 3 * (strength,) if image else tuple(max(c, 0.0) * strength for c in emission.default_value[:3])
+        if image and strength > 0:
+            values['emissive_texture'] = self.texture([(image, None)], content)
+        normal = materials.source_of(node.inputs['Normal'])
+        if normal is not None and normal.type == 'NORMAL_MAP' and image_of(normal.inputs['Color']):
+            values['normal_texture'] = self.texture([(image_of(normal.inputs['Color']), None)], content)
+            values['normal_scale'] = normal.inputs['Strength'].default_value
+        method = getattr(material, 'blend_method', 'OPAQUE')
+        if method != 'OPAQUE':
+            values['alpha_mode'] = 'MASK' if method == 'CLIP' else 'BLEND'
+            values['alpha'] = 1.0 if node.inputs['Alpha'].is_linked else clamped(node.inputs['Alpha'].default_value)
+            values['alpha_cutoff'] = material.alpha_threshold
+        return values
+
+    def texture(self, sources, content):
+        """The key of a texture of (image, channel) pairs: one whole image, or an image's channel for each of its channels."""
+        key = tuple((image.name_full, channel) if image else None for image, channel in sources)
+        # Names of images, for forget().
+        key = (*(image.name_full for image, _ in sources if image), key)
+        if key not in self.images:
+            self.images[key] = texels_of(sources)
+        content.textures[key] = self.images[key]
+        return key
+
+
+def clamped(value):
+    return min(max(value, 0.0), 1.0)
+
+
+def image_of(socket):
+    """The image that a socket is linked to, also by a node that separates channels; None if there is none."""
+    node = materials.source_of(socket) if socket is not None else None
+    if node is not None and node.type in ('SEPARATE_COLOR', 'SEPRGB'):
+        node = materials.source_of(node.inputs[0])
+    image = node.image if node is not None and node.type == 'TEX_IMAGE' else None
+    return image if image is not None and image.size[0] > 0 else None
+
+
+def channel_of(socket):
+    """The channel of its image that a socket reads."""
+    node = materials.source_of(socket)
+    if node is None or node.type == 'TEX_IMAGE':
+        return 0
+    link = socket.links[0]
+    return [each.name for each in node.outputs].index(link.from_socket.name)
+
+
+def texels_of(sources):
+    """Height x width x 4 bytes, with the top row first. Without an image, a channel is full."""
+    pictures = [(whole_texels(image) if image else None, channel) for image, channel in sources]
+    if len(pictures) == 1:
+        return pictures[0][0]
+    first = next(picture for picture, _ in pictures if picture is not None)
+    texels = numpy.full_like(first, 255)
+    for i, (picture, channel) in enumerate(pictures):
+        if picture is not None:
+            rows = numpy.arange(first.shape[0]) * picture.shape[0] // first.shape[0]
+            columns = numpy.arange(first.shape[1]) * picture.shape[1] // first.shape[1]
+            texels[:, :, i] = picture[rows[:, None], columns, channel]
+    return texels
+
+
+def whole_texels(image):
+    width, height = image.size
+    pixels = numpy.empty(width * height * image.channels, numpy.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, image.channels)[::-1]
+    if image.is_float and image.colorspace_settings.name != 'Non-Color':
+        # Blender has them linear, and textures of colours are encoded.
+        pixels = numpy.where(pixels <= 0.0031308, 12.92 * pixels, 1.055 * numpy.maximum(pixels, 0.0031308)**(1 / 2.4) - 0.055)
+    texels = numpy.full((height, width, 4), 255, numpy.uint8)
+    count = min(image.channels, 4)
+    texels[:, :, :count] = numpy.round(255 * numpy.clip(pixels[:, :, :count], 0, 1))
+    if image.channels < 3:
+        texels[:, :, 1:3] = texels[:, :, :1]
+    return texels
