@@ -10,7 +10,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import closed, engine, lamps, materials, world
+from . import closed, engine, lamps, materials, viewport, world
 
 bl_info = {
     "name": "Gnomon",
@@ -441,11 +441,13 @@ class GNOMON_PT_report(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return bool(context.window_manager.gnomon_report)
+        return bool(context.window_manager.gnomon_report or viewport.remarks())
 
     def draw(self, context):
         for line in context.window_manager.gnomon_report.splitlines():
             self.layout.label(text=line)
+        for line in viewport.remarks():
+            self.layout.label(text=line, icon='VIEW3D')
 
 
 def register_panel():

@@ -79,9 +79,6 @@ class Collector:
         changed = {update.id.name for update in depsgraph.updates if update.is_updated_geometry}
         for key in [key for key in self.meshes if changed & set(key[0])]:
             del self.meshes[key]
-        for update in depsgraph.updates:
-            if update.id.bl_rna.identifier == 'Image':
-                self.images = {key: value for key, value in self.images.items() if update.id.name not in key}
 
     def content(self, depsgraph, space=None):
         """The Content of a depsgraph. space: a SpaceView3D, for its local view. The world is left out."""
@@ -230,11 +227,16 @@ class Collector:
     def texture(self, sources, content):
         """The key of a texture of (image, channel) pairs: one whole image, or an image's channel for each of its channels."""
         key = tuple((image.name_full, channel) if image else None for image, channel in sources)
-        # Names of images, for forget().
-        key = (*(image.name_full for image, _ in sources if image), key)
-        if key not in self.images:
-            self.images[key] = texels_of(sources)
-        content.textures[key] = self.images[key]
+        # Updates of a depsgraph do not name images.
+        images = [image for image, _ in sources if image]
+        state = [(image.filepath, tuple(image.size), image.is_dirty) for image in images]
+        old_state, texels = self.images.get(key, (None, None))
+        if state != old_state or (key not in content.textures and any(image.is_dirty for image in images)):
+            read = texels_of(sources)
+            # The same array stands for the same texels.
+            texels = texels if texels is not None and numpy.array_equal(texels, read) else read
+            self.images[key] = state, texels
+        content.textures[key] = texels
         return key
 
 

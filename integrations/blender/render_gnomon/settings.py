@@ -19,6 +19,14 @@ INT_MAX = 2**31 - 1
 DESCRIPTIONS = {name: each for name, each in gnomon.Renderer.descriptions().items() if name != 'background'} if gnomon else {}
 
 
+def redraw_viewports():
+    """Asks for a new drawing of the viewports that Gnomon may draw."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == 'VIEW_3D' and area.spaces.active.shading.type == 'RENDERED':
+                area.tag_redraw()
+
+
 def title(name, description):
     text = description.label if description.label != name else name.replace('_', ' ').capitalize()
     unit = {'rad': '', 'bytes': 'MiB'}.get(description.unit, description.unit)
@@ -29,7 +37,8 @@ def property_of(name, description):
     """A property of Blender with the name, sentence, limits and default of a setting."""
     is_absent = description.default is None
     # Blender adds the last full stop.
-    facts = {'name': title(name, description), 'description': description.sentence.removesuffix('.')}
+    facts = {'name': title(name, description), 'description': description.sentence.removesuffix('.'),
+             'update': lambda own, context: redraw_viewports()}
     kind = description.type.removesuffix(' | None')
     if kind == 'bool' and description.words == ['off', 'on']:
         return bpy.props.BoolProperty(default=description.default, **facts)
@@ -93,6 +102,7 @@ class GNOMON_OT_unset(bpy.types.Operator):
 
     def execute(self, context):
         context.scene.gnomon.property_unset(self.setting)
+        redraw_viewports()
         return {'FINISHED'}
 
 

@@ -68,9 +68,12 @@ class Painter:
     def __init__(self):
         self.condition = threading.Condition()
         self.wanted = {}
+        self.wanted_count = 0
         self.is_ended = False
         # (array, View, whether it is complete)
         self.picture = None
+        # wanted_count of the picture.
+        self.shown_count = 0
         self.error = None
         self.remarks = []
         self.is_new = False
@@ -81,6 +84,7 @@ class Painter:
     def want(self, **wanted):
         with self.condition:
             self.wanted.update(wanted)
+            self.wanted_count += 1
             self.condition.notify()
 
     def end(self):
@@ -93,7 +97,7 @@ class Painter:
             while is_idle and not self.wanted and not self.is_ended:
                 self.condition.wait()
             wanted, self.wanted = self.wanted, {}
-            return wanted
+            return wanted, self.wanted_count
 
     def publish(self, **values):
         with self.condition:
@@ -110,32 +114,35 @@ class Painter:
     def paint(self, gnomon):
         shown = mirror.Mirror(gnomon)
         device = renderer = view = None
-        is_idle, has_content = True, False
+        is_idle, values = True, None
         while True:
-            wanted = self.take_wanted(is_idle)
+            wanted, count = self.take_wanted(is_idle)
             if self.is_ended:
                 return
             if 'content' in wanted:
                 shown.show(wanted['content'])
-                has_content = True
             if 'view' in wanted:
                 view = wanted['view']
                 kind = gnomon.CameraKind.PERSPECTIVE if view.is_perspective else gnomon.CameraKind.ORTHOGRAPHIC
                 shown.camera.edit(kind=kind, **view.camera)
                 shown.eye.parent_from_node = view.matrix
-            is_idle = view is None or not has_content
+            values = wanted.get('settings', values)
+            is_idle = view is None or values is None
             if is_idle:
                 continue
-            if renderer is None:
-                device = gnomon.Device()
-                renderer = gnomon.Renderer(device, shown.scene, view.size)
+            # A setting that is no longer set has its default again.
+            if renderer is None or set(values) != names:
+                del renderer
+                device = device or gnomon.Device()
+                renderer, names = gnomon.Renderer(device, shown.scene, view.size, **values), set(values)
+            elif 'settings' in wanted:
+                for name, value in values.items():
+                    setattr(renderer, name, value)
             if renderer.size != view.size:
                 renderer.size = view.size
-            for name, value in wanted.get('settings', {}).items():
-                setattr(renderer, name, value)
             picture, is_idle = renderer.refine(SECONDS, shown.eye)
             report = renderer.report()
-            self.publish(picture=(picture, view, is_idle), samples=report.sample_count, remarks=report.warnings + report.limits)
+            self.publish(picture=(picture, view, is_idle), shown_count=count, samples=report.sample_count, remarks=report.warnings + report.limits)
 
 
 def baked(world_of_scene, done):
@@ -190,17 +197,6 @@ class Viewport:
             self.update_world(scene.world)
         self.content.world = self.world
         self.painter.want(content=self.content)
-        self.update_settings(scene)
-
-    def update_settings(self, scene):
-        background = None if scene.render.film_transparent else 'world'
-        wanted = {'sample_count': scene.gnomon.sample_count, 'background': background, **settings.chosen(scene.gnomon)}
-        # Those that are no longer set have the value of a viewport again.
-        if self.settings is not None and set(self.settings) - set(wanted):
-            wanted = {**{name: settings.DESCRIPTIONS[name].default for name in set(self.settings) - set(wanted)}, **wanted}
-        if wanted != self.settings:
-            self.settings = wanted
-            self.painter.want(settings=wanted)
 
     def update_world(self, blender_world):
         self.bake_count += 1
@@ -217,8 +213,8 @@ class Viewport:
                 self.painter.publish(error=f"the world: {error}")
                 return
             self.set_world({'picture': picture})
-            content = mirror.Content(**{**vars(self.content), 'world': self.world})
-            self.painter.want(content=content)
+            self.content = mirror.Content(**{**vars(self.content), 'world': self.world})
+            self.painter.want(content=self.content)
 
         baked(blender_world.original, done)
 
@@ -231,6 +227,13 @@ class Viewport:
         if view.key() != self.view_key:
             self.view_key = view.key()
             self.painter.want(view=view)
+        # The depsgraph has older ones.
+        scene = context.scene
+        chosen = {'sample_count': scene.gnomon.sample_count, 'background': None if scene.render.film_transparent else 'world',
+                  **settings.chosen(scene.gnomon)}
+        if chosen != self.settings:
+            self.settings = chosen
+            self.painter.want(settings=chosen)
         with self.painter.condition:
             picture, error, samples = self.painter.picture, self.painter.error, self.painter.samples
         if error is not None:
@@ -271,11 +274,13 @@ def poll():
             is_new = is_new or viewport.painter.is_new
             viewport.painter.is_new = False
     if is_new:
-        for window in bpy.context.window_manager.windows:
-            for area in window.screen.areas:
-                if area.type == 'VIEW_3D' and area.spaces.active.shading.type == 'RENDERED':
-                    area.tag_redraw()
+        settings.redraw_viewports()
     return POLL_SECONDS if Viewport.all else None
+
+
+def remarks():
+    """What the viewports do not draw as in Blender."""
+    return list(dict.fromkeys(text for each in Viewport.all for text in each.collector.remarks + each.painter.remarks))
 
 
 def end_all():
