@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a depsgraph of Blender shows, as mirror.Content: arrays and numbers that another thread may read."""
 
+import dataclasses
+
 import numpy
 from mathutils import Matrix
 
@@ -8,6 +10,7 @@ from . import closed, lamps, materials
 from .mirror import Content, Node, Part
 
 FILE_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+WITHOUT_SURFACE = {'EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'}
 WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
 # Reflectance of a dielectric at normal incidence, of which Gnomon's specular colour is a factor.
 DIELECTRIC_F0 = 0.04
@@ -64,50 +67,104 @@ def parts_of(mesh, slots):
     return parts
 
 
+class Thing:
+    """What an object adds at each of its instances: a mesh or a lamp, or neither."""
+
+    def __init__(self, mesh=None, lamp=None, casts_shadow=True):
+        self.mesh = mesh
+        self.lamp = lamp
+        self.casts_shadow = casts_shadow
+
+    def node(self, matrix):
+        return Node(matrix, self.mesh, self.lamp, self.casts_shadow)
+
+
 class Collector:
-    """Reads depsgraphs of one viewport. Meshes and images are read again only if an update names them."""
+    """Reads depsgraphs of one viewport. Meshes and images are read again only if they changed, and all if not only objects moved."""
 
     def __init__(self):
         self.meshes = {}
+        # By key, with what tells that it changed.
         self.images = {}
         # Properties of the materials of one depsgraph, by name.
         self.materials = {}
         self.remarks = []
+        self.last = None
+        # Names of the objects that others repeat, or that repeat others.
+        self.repeated = set()
 
     def forget(self, depsgraph):
-        """Forgets what the updates of a depsgraph changed."""
+        """Forgets the meshes that the updates of a depsgraph changed."""
         changed = {update.id.name for update in depsgraph.updates if update.is_updated_geometry}
         for key in [key for key in self.meshes if changed & set(key[0])]:
             del self.meshes[key]
 
     def content(self, depsgraph, space=None):
         """The Content of a depsgraph. space: a SpaceView3D, for its local view. The world is left out."""
+        is_local = space is not None and space.local_view is not None
+        self.last = (None if is_local else self.moved(depsgraph)) or self.collected(depsgraph, space if is_local else None)
+        return self.last
+
+    def moved(self, depsgraph):
+        """The last content with objects at other places; None if anything else changed."""
+        if self.last is None or not depsgraph.updates:
+            return None
+        nodes = dict(self.last.nodes)
+        for update in depsgraph.updates:
+            thing = update.id
+            if not hasattr(thing, 'matrix_world') or update.is_updated_geometry or update.is_updated_shading or thing.name in self.repeated:
+                return None
+            old = nodes.get((thing.name,))
+            if old is not None:
+                nodes[thing.name,] = Node(matrix_of(thing.matrix_world), old.mesh, old.lamp, old.casts_shadow)
+            elif thing.type not in WITHOUT_SURFACE:
+                return None
+        return dataclasses.replace(self.last, nodes=nodes)
+
+    def collected(self, depsgraph, local):
         self.forget(depsgraph)
         self.remarks = []
         self.materials = {}
+        self.repeated = set()
         content = Content()
-        seen_meshes = {}
-        for instance in depsgraph.object_instances:
-            thing = instance.object
-            shown = (instance.parent or thing).original
-            if not instance.show_self or (space is not None and space.local_view and not shown.local_view_get(space)):
+        instances = depsgraph.object_instances
+        count = len(instances)
+        matrices, shown, keys = numpy.empty(16 * count, numpy.float32), numpy.empty(count, bool), numpy.empty(8 * count, numpy.int32)
+        instances.foreach_get('matrix_world', matrices)
+        instances.foreach_get('show_self', shown)
+        instances.foreach_get('persistent_id', keys)
+        matrices = numpy.array(FILE_FROM_BLENDER) @ matrices.reshape(-1, 4, 4).transpose(0, 2, 1).astype(numpy.float64)
+        things = {}
+        for instance, is_shown, key, matrix in zip(instances, shown, keys.reshape(-1, 8), matrices):
+            thing, parent = instance.object, instance.parent
+            name = thing.name
+            if parent is not None:
+                self.repeated.update((name, parent.name))
+            if not is_shown or (local is not None and not (parent or thing).original.local_view_get(local)):
                 continue
-            key = (thing.original.name_full, *((shown.name_full, *instance.persistent_id) if instance.is_instance else ()))
-            matrix = matrix_of(instance.matrix_world)
-            if thing.type == 'LIGHT':
-                self.add_lamp(content, key, thing, matrix)
-            elif thing.type in WITH_SURFACE:
-                mesh = self.mesh_of(thing, content)
-                if mesh is not None:
-                    seen_meshes[mesh] = self.meshes[mesh]
-                    self.add_materials(self.meshes[mesh], content)
-                    content.nodes[key] = Node(matrix, mesh=mesh, casts_shadow=thing.visible_shadow)
-            elif thing.type not in ('EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'):
-                self.remark(f"object '{thing.name}': objects of the kind {thing.type} are not drawn")
-        # Those that are hidden for a time stay in self.meshes.
-        content.meshes = seen_meshes
+            data = thing.data
+            # Nodes repeat meshes that are of no object.
+            which = name, data and data.as_pointer()
+            if which not in things:
+                things[which] = self.thing_of(thing, content)
+            added = things[which]
+            if added.mesh is not None or added.lamp is not None:
+                content.nodes[(name,) if parent is None else (name, parent.name, key.tobytes())] = added.node(matrix)
         self.images = {key: value for key, value in self.images.items() if key in content.textures}
         return content
+
+    def thing_of(self, thing, content):
+        if thing.type == 'LIGHT':
+            return Thing(lamp=self.lamp_of(thing, content))
+        if thing.type in WITH_SURFACE:
+            mesh = self.mesh_of(thing, content)
+            if mesh is not None:
+                content.meshes[mesh] = self.meshes[mesh]
+                self.add_materials(self.meshes[mesh], content)
+            return Thing(mesh=mesh, casts_shadow=thing.visible_shadow)
+        if thing.type not in WITHOUT_SURFACE:
+            self.remark(f"object '{thing.name}': objects of the kind {thing.type} are not drawn")
+        return Thing()
 
     def remark(self, text):
         if text not in self.remarks:
@@ -128,7 +185,8 @@ class Collector:
             thing.to_mesh_clear()
         return key if self.meshes[key] else None
 
-    def add_lamp(self, content, key, thing, matrix):
+    def lamp_of(self, thing, content):
+        """The key of an object's lamp; None if it gives no light."""
         lamp = thing.data
         name = lamp.original.name_full
         if name not in content.lamps:
@@ -137,8 +195,7 @@ class Collector:
                 self.remark(f"lamp '{thing.name}': {remark}")
             values['shadow_kind'] = None if lamp.use_shadow else 'NONE'
             content.lamps[name] = values
-        if content.lamps[name]['intensity'] > 0:
-            content.nodes[key] = Node(matrix, lamp=name)
+        return name if content.lamps[name]['intensity'] > 0 else None
 
     def material_of(self, material, content):
         """(name, whether light passes it)"""

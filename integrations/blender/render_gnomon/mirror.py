@@ -71,17 +71,25 @@ class Mirror:
 
     def show_things(self, content, kind, add, edit):
         things, old = getattr(self, kind), getattr(self.shown, kind)
+        if old is getattr(content, kind):
+            return
         for key, value in getattr(content, kind).items():
+            before = old.get(key)
+            if value is before:
+                continue
             if key not in things:
                 things[key] = add(value)
-            elif value is not old[key] and not is_same(value, old[key]):
-                edited = edit(things[key], value, old[key])
+            elif not is_same(value, before):
+                edited = edit(things[key], value, before)
                 if edited is not None:
                     things[key] = edited
 
     def remove_things(self, content, kind):
-        things = getattr(self, kind)
-        for key in set(things) - set(getattr(content, kind)):
+        things, wanted = getattr(self, kind), getattr(content, kind)
+        # All that are wanted are there.
+        if len(things) == len(wanted):
+            return
+        for key in set(things) - set(wanted):
             thing = things.pop(key)
             for each in thing if isinstance(thing, list) else [thing]:
                 self.scene.remove(each)
@@ -149,5 +157,5 @@ def is_same(a, b):
     if isinstance(a, dict):
         return a == b
     if isinstance(a, Node):
-        return (a.mesh, a.lamp, a.casts_shadow) == (b.mesh, b.lamp, b.casts_shadow) and (a.matrix == b.matrix).all()
+        return (a.mesh, a.lamp, a.casts_shadow) == (b.mesh, b.lamp, b.casts_shadow) and a.matrix.tobytes() == b.matrix.tobytes()
     return False
