@@ -208,6 +208,24 @@ def steps():
         assert picture[0].shape != before[0].shape or (picture[0] != before[0]).any(), f"{change.__name__} changes nothing"
         print("as collected anew after:", change.__name__, f"{time.monotonic() - begun:.1f} s", flush=True)
 
+    # What is not drawn is named.
+    assert not viewport.remarks(), viewport.remarks()
+    bpy.ops.mesh.primitive_monkey_add()
+    material = bpy.data.materials.new('odd')
+    material.use_nodes = True
+    bpy.context.object.data.materials.append(material)
+    tree, principled = material.node_tree, material.node_tree.nodes['Principled BSDF']
+    tree.links.new(tree.nodes.new('ShaderNodeTexNoise').outputs[0], principled.inputs['Roughness'])
+    tree.links.new(tree.nodes.new('ShaderNodeValue').outputs[0], principled.inputs['Clearcoat'])
+    image = tree.nodes.new('ShaderNodeTexImage')
+    image.image = bpy.data.images['noise']
+    tree.links.new(tree.nodes.new('ShaderNodeMapping').outputs[0], image.inputs['Vector'])
+    tree.links.new(image.outputs['Color'], principled.inputs['Base Color'])
+    picture = yield from check(picture)
+    for text in ("'Roughness' comes from the nodes Noise Texture", "what 'Clearcoat' is linked to", "the mapping of 'Base Color'"):
+        assert any(text in each for each in viewport.remarks()), (text, viewport.remarks())
+    assert len(viewport.remarks()) == 3, viewport.remarks()
+
     # A world that is not of one colour is baked.
     tree = bpy.context.scene.world.node_tree
     tree.links.new(tree.nodes.new('ShaderNodeTexSky').outputs[0], tree.nodes['Background'].inputs['Color'])

@@ -274,12 +274,27 @@ class Collector:
         if normal is not None and normal.type == 'NORMAL_MAP' and image_of(normal.inputs['Color']):
             values['normal_texture'] = self.texture([(image_of(normal.inputs['Color']), None)], content)
             values['normal_scale'] = normal.inputs['Strength'].default_value
+        self.remark_sockets(node, material, values)
         method = getattr(material, 'blend_method', 'OPAQUE')
         if method != 'OPAQUE':
             values['alpha_mode'] = 'MASK' if method == 'CLIP' else 'BLEND'
             values['alpha'] = 1.0 if node.inputs['Alpha'].is_linked else clamped(node.inputs['Alpha'].default_value)
             values['alpha_cutoff'] = material.alpha_threshold
         return values
+
+    def remark_sockets(self, node, material, values):
+        """Names the linked sockets of a Principled BSDF that are not drawn, unless materials.remarks_of names them."""
+        drawn = {'Base Color': 'base_color_texture', 'Metallic': 'metallic_roughness_texture', 'Roughness': 'metallic_roughness_texture',
+                 'Emission': 'emissive_texture', 'Emission Color': 'emissive_texture', 'Normal': 'normal_texture'}
+        for socket in (each for each in node.inputs if each.is_linked):
+            nodes = materials.upstream(socket, [])
+            if any(each.type not in materials.KNOWN_NODES for each in nodes):
+                continue
+            is_alpha = socket.name == 'Alpha' and image_of(socket) is not None and image_of(socket) == image_of(node.inputs['Base Color'])
+            if not is_alpha and (values.get(drawn.get(socket.name)) is None or (socket.name != 'Normal' and image_of(socket) is None)):
+                self.remark(f"material '{material.name}': what '{socket.name}' is linked to is not drawn in the viewport")
+            elif any(each.type == 'MAPPING' for each in nodes):
+                self.remark(f"material '{material.name}': the mapping of '{socket.name}' is not drawn in the viewport")
 
     def texture(self, sources, content):
         """The key of a texture of (image, channel) pairs: one whole image, or an image's channel for each of its channels."""

@@ -147,7 +147,7 @@ class GnomonEngine(bpy.types.RenderEngine):
             self.report({'WARNING'}, f"Gnomon: {remark}")
         memory_mib = report.memory_bytes / settings.MIB
         self.update_memory_stats(memory_used=memory_mib, memory_peak=memory_mib)
-        self.update_stats("Gnomon", f"{len(remarks)} things are not drawn as in Blender" if remarks else "")
+        self.update_stats("Gnomon", f"{len(remarks)} remarks" if remarks else "")
         bpy.context.window_manager.gnomon_report = "\n".join(remarks)
 
     def write(self, passes, layers, region):

@@ -148,6 +148,10 @@ class GNOMON_PT_picture(SettingsPanel, bpy.types.Panel):
     def has(name, description):
         return not description.group and description.label != name
 
+    def draw(self, context):
+        super().draw(context)
+        self.layout.prop(context.scene.render, 'film_transparent')
+
 
 class GNOMON_PT_shadows(SettingsPanel, bpy.types.Panel):
     bl_label = "Shadow Settings"

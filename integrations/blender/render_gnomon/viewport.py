@@ -239,10 +239,9 @@ class Viewport:
         if error is not None:
             engine.update_stats("Gnomon", error)
         elif picture is not None:
-            _, _, is_complete = picture
             remarks = len(self.collector.remarks) + len(self.painter.remarks)
             engine.update_stats("Gnomon", f"{samples} of {self.settings['sample_count']} samples" +
-                                (f", {remarks} things are not drawn as in Blender" if remarks else ""))
+                                (f", {remarks} remarks" if remarks else ""))
         if picture is None:
             return
         if picture is not self.shown:
