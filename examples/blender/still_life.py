@@ -5,6 +5,7 @@ An area lamp, a sun with an angle, a sky, closed glass, and a bevel.
 """
 
 import math
+import os
 import sys
 
 import bpy
@@ -69,4 +70,4 @@ sky.sky_type, sky.sun_disc, sky.sun_elevation = 'NISHITA', False, math.radians(2
 tree.links.new(sky.outputs[0], tree.nodes['Background'].inputs['Color'])
 tree.nodes['Background'].inputs['Strength'].default_value = 0.1
 scene.render.resolution_x, scene.render.resolution_y = 264, 198
-bpy.ops.wm.save_as_mainfile(filepath=sys.argv[-1])
+bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(sys.argv[-1]))

@@ -39,6 +39,12 @@ inline constexpr const char *enum_name<scene::AlphaMode> = "AlphaMode";
 template <>
 inline constexpr const char *enum_name<scene::CameraKind> = "CameraKind";
 
+/** The words of an enumeration, or of one that may be absent. */
+template <typename Value>
+inline constexpr auto &words_of = scene::words<Value>;
+template <typename Value>
+inline constexpr auto &words_of<std::optional<Value>> = scene::words<Value>;
+
 /** Name of a type in the stub, as it is read. */
 template <typename Value>
 [[nodiscard]] std::string type_name()
@@ -81,6 +87,10 @@ struct Field {
   std::function<py::object(const ScenePtr &scene, const T &value)> get;
   /** \throws py::type_error for a value of another type, py::value_error for one out of range, with the reason */
   std::function<void(const ScenePtr &scene, T &value, py::handle set)> set;
+  /** Of the row that the property is made from, if it is made from one. */
+  std::optional<scene::Description> row{};
+  /** The words or enumerators of the values, or for false and true. */
+  std::vector<std::string> words{};
 };
 
 template <typename T>
@@ -234,23 +244,41 @@ template <typename Kind>
   return text;
 }
 
+/** Keeps the description and the words of \a row in its field. */
+template <typename T, typename Row>
+void describe(Field<T> &field, const Row &row)
+{
+  field.row = row;
+  using Value = typename Row::Value;
+  if constexpr (std::is_same_v<Value, bool>) {
+    field.words.assign(row.switch_words.begin(), row.switch_words.end());
+  }
+  else {
+    field.words.assign(words_of<Value>.begin(), words_of<Value>.end());
+  }
+}
+
 /** The field of a row. \a access: returns the value of a T; \a kinds: see doc_of */
 template <typename T, typename Row, typename Access>
 [[nodiscard]] Field<T> row_field(const Row &row, Access access, std::string_view kinds = {})
 {
   using Value = typename Row::Value;
   const std::string doc = doc_of<Value>(row, kinds);
-  if constexpr (std::is_enum_v<Value>) {
-    if constexpr (enum_name<Value> == nullptr) {
-      return word_field<T>(std::string(row.name), access, doc);
+  Field<T> field = [&] {
+    if constexpr (std::is_enum_v<Value>) {
+      if constexpr (enum_name<Value> == nullptr) {
+        return word_field<T>(std::string(row.name), access, doc);
+      }
+      else {
+        return plain_field<T>(std::string(row.name), access, doc);
+      }
     }
     else {
-      return plain_field<T>(std::string(row.name), access, doc);
+      return limited_field<T>(std::string(row.name), access, row, doc);
     }
-  }
-  else {
-    return limited_field<T>(std::string(row.name), access, row, doc);
-  }
+  }();
+  describe(field, row);
+  return field;
 }
 
 /** Adds a field for each row of \a Part. \a access: returns the part of a T that has the rows. */

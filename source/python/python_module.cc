@@ -18,6 +18,20 @@ namespace {
 using eevee::Background;
 using eevee::Settings;
 
+/** A setting as scripts and other programs show it. */
+struct Description {
+  std::string label;
+  std::string group;
+  std::string unit;
+  std::string sentence;
+  std::string zero;
+  double min = 0.0;
+  double max = 0.0;
+  std::vector<std::string> words;
+  std::string type;
+  py::object default_value;
+};
+
 Field<Settings> background_field()
 {
   return {"background",
@@ -65,6 +79,7 @@ Fields<Settings> make_settings_fields()
     }
     if constexpr (std::is_same_v<Value, Background>) {
       fields.push_back(background_field());
+      describe(fields.back(), row);
     }
     else if constexpr (std::is_same_v<Value, eevee::PcfKernel>) {
       fields.push_back({std::string(row.name), std::string(row.sentence), "str",
@@ -79,6 +94,7 @@ Fields<Settings> make_settings_fields()
                           }
                           access(settings) = *kernel;
                         }});
+      describe(fields.back(), row);
     }
     else {
       fields.push_back(row_field<Settings>(row, access));
@@ -94,6 +110,8 @@ Fields<Settings> make_settings_fields()
   });
   return fields;
 }
+
+constexpr int default_sample_count = 64;
 
 const Fields<Settings> settings_fields = make_settings_fields();
 
@@ -120,42 +138,85 @@ std::shared_ptr<Renderer> make_offline_renderer(const std::shared_ptr<Device> &d
   return std::make_shared<Renderer>(device, scene, size_px, settings);
 }
 
-/**
- * Calls \a draw(camera, progress) without the interpreter's lock, and returns what it returns. A signal whose handler
- * raises ends it.
- */
-template <typename Draw>
-auto drawn_by(const Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, const Draw &draw)
+/** In the order of the rows. */
+py::dict descriptions()
 {
-  const scene::PlacedCamera placed = camera_at(renderer.scene(), camera);
-  bool is_interrupted = false;
-  const auto progress = [&](int /*samples_drawn*/) {
-    const py::gil_scoped_acquire locked;
-    is_interrupted = PyErr_CheckSignals() != 0;
-    return !is_interrupted;
-  };
-  auto result = [&] {
-    const Reading reading(renderer.scene());
-    const py::gil_scoped_release unlocked;
-    return draw(placed, progress);
-  }();
-  if (is_interrupted) {
-    throw py::error_already_set();
+  const Settings settings = eevee::offline_settings(default_sample_count);
+  py::dict result;
+  for (const Field<Settings> &field : settings_fields) {
+    const scene::Description &row = *field.row;
+    std::string label(row.label.empty() ? row.name : row.label);
+    result[field.name.c_str()] = Description{.label = std::move(label),
+                                             .group = std::string(row.group),
+                                             .unit = std::string(row.unit),
+                                             .sentence = std::string(row.sentence),
+                                             .zero = std::string(row.zero),
+                                             .min = row.min,
+                                             .max = row.max,
+                                             .words = field.words,
+                                             .type = field.type,
+                                             .default_value = field.get(nullptr, settings)};
   }
   return result;
 }
 
-py::array_t<float> render(Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, double seconds_max)
+/**
+ * Calls \a draw(camera, progress) without the interpreter's lock, and returns what it returns. \a progress: None, or
+ * called with the number of samples after each. An exception that it raises, or a signal's handler, ends the picture.
+ */
+template <typename Draw>
+auto drawn_by(const Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, const py::object &progress,
+              const Draw &draw)
+{
+  const scene::PlacedCamera placed = camera_at(renderer.scene(), camera);
+  std::exception_ptr raised;
+  const auto report = [&](int samples_drawn) {
+    const py::gil_scoped_acquire locked;
+    try {
+      if (PyErr_CheckSignals() != 0) {
+        throw py::error_already_set();
+      }
+      if (!progress.is_none()) {
+        progress(samples_drawn);
+      }
+    }
+    catch (...) {
+      raised = std::current_exception();
+    }
+    return !raised;
+  };
+  auto result = [&] {
+    const Reading reading(renderer.scene());
+    const py::gil_scoped_release unlocked;
+    return draw(placed, report);
+  }();
+  if (raised) {
+    std::rethrow_exception(raised);
+  }
+  return result;
+}
+
+py::array_t<float> render(Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, double seconds_max,
+                          const py::object &progress)
 {
   if (!(seconds_max > 0.0)) {
     throw py::value_error(fmt::format("render: seconds_max {} is not above 0", seconds_max));
   }
   const glm::ivec2 size_px = renderer.size_px();
-  return picture_array(drawn_by(renderer, camera,
-                                [&](const scene::PlacedCamera &placed, const auto &progress) {
-                                  return renderer.render(placed, {.progress = progress, .seconds_max = seconds_max});
+  return picture_array(drawn_by(renderer, camera, progress,
+                                [&](const scene::PlacedCamera &placed, const auto &report) {
+                                  return renderer.render(placed, {.progress = report, .seconds_max = seconds_max});
                                 }),
                        size_px);
+}
+
+py::tuple refine(Renderer &renderer, double seconds, const std::optional<Thing<scene::Node>> &camera)
+{
+  const glm::ivec2 size_px = renderer.size_px();
+  auto [pixels, is_complete] = drawn_by(
+      renderer, camera, py::none(),
+      [&](const scene::PlacedCamera &placed, const auto & /*report*/) { return renderer.refine(placed, seconds); });
+  return py::make_tuple(picture_array(std::move(pixels), size_px), is_complete);
 }
 
 constexpr std::array<std::string_view, 10> layer_names = {"combined",  "depth",    "position", "normal", "albedo",
@@ -210,7 +271,7 @@ void add_ids(Renderer &renderer, std::span<const glm::vec4> normal, glm::ivec2 s
 }
 
 py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
-                const std::optional<Thing<scene::Node>> &camera)
+                const std::optional<Thing<scene::Node>> &camera, const py::object &progress)
 {
   for (const std::string &name : names) {
     if (std::ranges::find(layer_names, name) == layer_names.end()) {
@@ -225,8 +286,8 @@ py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
                              .has_emission = has("emission"),
                              .has_world = has("world")};
   const glm::ivec2 size_px = renderer.size_px();
-  Layers drawn = drawn_by(renderer, camera, [&](const scene::PlacedCamera &placed, const auto &progress) {
-    return renderer.render_layers(placed, {.progress = progress}, request);
+  Layers drawn = drawn_by(renderer, camera, progress, [&](const scene::PlacedCamera &placed, const auto &report) {
+    return renderer.render_layers(placed, {.progress = report}, request);
   });
   py::dict arrays;
   const auto add = [&](const char *name, const py::array_t<float> &array, int first, int count) {
@@ -323,6 +384,20 @@ void define_renderer(py::module_ &module)
                     "Wall time of the picture until the device is done, without the copy of its pixels, s.")
       .def_readonly("memory_bytes", &Report::memory_bytes, "Content of everything on the device, bytes.");
 
+  py::class_<Description>(module, "Description", "A setting as programs show it.")
+      .def_readonly("label", &Description::label, "A short text, or the name of the property.")
+      .def_readonly("group", &Description::group, "A header for several settings; empty: none.")
+      .def_readonly("unit", &Description::unit, "Of the value; empty: none.")
+      .def_readonly("sentence", &Description::sentence, "The meaning.")
+      .def_readonly("zero", &Description::zero,
+                    "The meaning of 0 where it is allowed beside the limits; empty: it is not.")
+      .def_readonly("min", &Description::min, "The least number.")
+      .def_readonly("max", &Description::max, "The largest number.")
+      .def_readonly("words", &Description::words, "Of the values of an enumeration, or for False and True.")
+      .def_readonly("type", &Description::type, "As in the stub.")
+      .def_readonly("default", &Description::default_value,
+                    "The value in pictures of Renderer.offline with 64 samples.");
+
   py::class_<Renderer, std::shared_ptr<Renderer>> renderer(
       module, "Renderer",
       "Draws a scene lit by its lamps and its world. A change of the scene or of a property takes effect with the next "
@@ -351,12 +426,21 @@ void define_renderer(py::module_ &module)
       "size", &Renderer::size_px, [](Renderer &owner, const glm::ivec2 &size_px) { owner.use().resize(size_px); },
       "Width and height of the picture, pixels.");
   renderer.def("render", &render, py::arg("camera") = py::none(), py::arg("seconds_max") = infinite,
+               py::arg("progress") = py::none(),
                "Draw a picture: an array of height x width x 4 float32 that owns its memory. Red, green and blue are "
                "scene-linear radiance, W/(sr m²), multiplied by alpha; the top row is the first.\n\n"
                "`camera`: a node that has one; None: the first of the scene. `seconds_max`: end the picture with fewer "
-               "samples, s. Other threads of the interpreter run meanwhile.");
+               "samples, s. `progress`: called on this thread after each sample with the number of samples; what it "
+               "raises ends the picture. Other threads of the interpreter run meanwhile.");
   renderer.def(
-      "layers", &layers, py::arg("names"), py::arg("camera") = py::none(),
+      "refine", &refine, py::arg("seconds"), py::arg("camera") = py::none(),
+      "For viewports: the picture within about this time, 0.0001 to 10 s, and whether it is complete. After a "
+      "change, the first call draws a whole picture, in a lower resolution and with smaller shadows if the time "
+      "asks for it; later calls refine it. The complete one equals that of render().");
+  renderer.def_static("descriptions", &descriptions,
+                      "A Description of each property, by its name, for programs that show them.");
+  renderer.def(
+      "layers", &layers, py::arg("names"), py::arg("camera") = py::none(), py::arg("progress") = py::none(),
       "Draw a picture and layers of it, from the same samples: a dictionary of arrays, with the top row first, by "
       "these names:\n\n"
       "'combined': what render() returns. 'depth': m along the view's axis, 1e10 without a surface. 'position': m, "
@@ -365,7 +449,8 @@ void define_renderer(py::module_ &module)
       "'light': light.NAME for each name of lamps, W/(sr m²). 'emission', 'world': the rest of the light. 'ids': "
       "node_ids and material_ids, int32 indices in the scene's nodes and materials, -1 for none.\n\n"
       "depth, position, normal and ids are those of the surface at the centre of a pixel. Blended surfaces are not in "
-      "them. Arrays of the same kind share their memory. Needs a sample_count and no noise_threshold.");
+      "them. Arrays of the same kind share their memory. Needs a sample_count and no noise_threshold. `progress`: as "
+      "in render(), for the samples of the picture.");
   renderer.def("report", &Renderer::report, "A Report on the last picture.");
 }
 

@@ -2,6 +2,7 @@
 #include "python_renderer.hh"
 
 #include "gpu_create_device.hh"
+#include "gpu_read.hh"
 #ifdef GNOMON_PYTHON_VULKAN
 #include "shader_check_spirv.hh"
 #endif
@@ -173,6 +174,23 @@ Layers Renderer::render_layers(const scene::PlacedCamera &camera, const eevee::D
   }
   layers.surfaces = eevee::render_surface_layers(renderer, camera, sample_count, request.surfaces);
   return layers;
+}
+
+std::pair<std::vector<glm::vec4>, bool> Renderer::refine(const scene::PlacedCamera &camera, double seconds)
+{
+  gpu::Device &device = device_->use();
+  const Drawing drawing(*device_);
+  const glm::ivec2 size = size_px();
+  std::optional<draw::TargetTexture> &shown = state_->shown;
+  if (!shown || glm::ivec2(shown->texture().desc().width, shown->texture().desc().height) != size) {
+    shown.emplace(device, "refined", gpu::Format::RGBA32F, size);
+  }
+  draw::Target target = shown->target();
+  target.encoding = draw::Encoding::SceneLinear;
+  const bool is_complete = state_->renderer.draw_within(seconds, camera, target);
+  samples_drawn_ = state_->renderer.budget_report().samples_drawn;
+  frame_seconds_ = state_->renderer.budget_report().seconds;
+  return {gpu::read_as<glm::vec4>(device, shown->texture()), is_complete};
 }
 
 Report Renderer::report()

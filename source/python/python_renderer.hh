@@ -3,6 +3,7 @@
 
 #include "python_scene.hh"
 
+#include "draw_target.hh"
 #include "eevee_picture_layers.hh"
 
 #include <mutex>
@@ -93,6 +94,11 @@ class Renderer {
    * \throws gpu::Error if the number of samples is not known, or not the same for all pixels
    */
   Layers render_layers(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits, const LayerRequest &request);
+  /**
+   * The picture of \a camera within \a seconds: at once after a change, in a lower quality if the time asks for it, and
+   * better with each call. Called as render(). \return the picture and whether it is complete \throws gpu::Error
+   */
+  std::pair<std::vector<glm::vec4>, bool> refine(const scene::PlacedCamera &camera, double seconds);
   [[nodiscard]] Report report();
   /** \throws gpu::Error */
   eevee::SceneRenderer &use();
@@ -114,6 +120,8 @@ class Renderer {
     /** Outlives the renderer. */
     ScenePtr scene;
     eevee::SceneRenderer renderer;
+    /** Of refine(), in the size of the viewport. */
+    std::optional<draw::TargetTexture> shown{};
   };
 
   std::shared_ptr<Device> device_;

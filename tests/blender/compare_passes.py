@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""compare_passes BLENDER PROGRAM: passes of Blender's engine are the layers of the program, to rounding."""
+"""compare_passes BLENDER PROGRAM: passes of Blender's engine are the layers of the program, to rounding.
+
+They are the same bit for bit, unless the scene has a picture as its world: its texels are then rounded once more on their way
+through Blender. The largest difference in eight scenes was 2.6e-6, of a normal.
+"""
 
 import sys
 
 import numpy
 import OpenImageIO
+
+BOUND = 1e-5
 
 
 def channels(path):
@@ -13,13 +19,20 @@ def channels(path):
 
 
 blender, program = (channels(path) for path in sys.argv[1:])
-# +Z is up in Blender, and +Y in files.
-names = {"Combined.R": "R", "Combined.G": "G", "Combined.B": "B", "Depth.Z": "depth.Z", "Normal.X": "normal.X",
-         "Normal.Z": "normal.Y", "DiffCol.R": "albedo.R", "DiffCol.G": "albedo.G", "DiffCol.B": "albedo.B"}
-for name, own in names.items():
-    a, b = blender[f"ViewLayer.{name}"], program[own]
-    error = abs(a - b).max() / max(1, abs(b).max() if own != "depth.Z" else 1)
-    assert error < 1e-4, f"{name} and {own} differ by {error}"
-assert (blender["ViewLayer.Combined.A"] == 1).all()
-assert (blender["ViewLayer.Normal.Y"] == -program["normal.Z"]).all()
-assert program["depth.Z"].min() < 10
+passes = {"Combined": "{}", "Depth": "depth.{}", "Normal": "normal.{}", "Position": "position.{}", "DiffCol": "albedo.{}",
+          "Emit": "emission.{}", "Env": "world.{}"}
+compared = set()
+for name, picture in blender.items():
+    _, kind, channel = name.split(".")
+    if name == "ViewLayer.Combined.A":
+        assert (picture == 1).all()
+        continue
+    # +Z is up in Blender, and +Y in files.
+    is_turned = kind in ("Normal", "Position")
+    own = {"Y": "Z", "Z": "Y"}.get(channel, channel) if is_turned else channel
+    expected = program[passes[kind].format(own)] * (-1 if is_turned and channel == "Y" else 1)
+    error = (abs(picture - expected) / numpy.maximum(1, abs(expected))).max()
+    assert error < BOUND, f"{name} differs by {error}"
+    compared.add(kind)
+assert compared == set(passes), compared
+assert program["depth.Z"].min() < 100

@@ -11,7 +11,8 @@ scene.render.engine = 'GNOMON'
 scene.gnomon.sample_count = 8
 scene.render.resolution_x, scene.render.resolution_y = 160, 90
 layer = bpy.context.view_layer
-layer.use_pass_z = layer.use_pass_normal = layer.use_pass_diffuse_color = True
+for name in ('z', 'position', 'normal', 'diffuse_color', 'emit', 'environment'):
+    setattr(layer, f'use_pass_{name}', True)
 scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'
 scene.render.image_settings.color_depth = '32'
 scene.render.filepath = sys.argv[-1]

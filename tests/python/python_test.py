@@ -701,6 +701,59 @@ class Pictures(unittest.TestCase):
         renderer.sample_count = 2
         self.assertEqual(renderer.render().shape, (18, 32, 4))
 
+    def test_progress_is_told_and_may_end_a_picture(self):
+        renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL | {"sample_count": 5})
+        seen = []
+        renderer.render(progress=seen.append)
+        renderer.layers(["depth"], progress=seen.append)
+        self.assertEqual(seen, 2 * [1, 2, 3, 4, 5])
+
+        def end(sample_count):
+            if sample_count == 2:
+                raise StopIteration("enough")
+
+        for draw in (renderer.render, lambda progress: renderer.layers(["depth"], progress=progress)):
+            with self.assertRaisesRegex(StopIteration, "enough"):
+                draw(progress=end)
+            self.assertEqual(renderer.report().sample_count, 2)
+
+    def test_refined_pictures_are_complete_ones_at_last(self):
+        scene = gnomon.load(PLAZA)
+        renderer = gnomon.Renderer(self.device, scene, (48, 27), sample_count=3, map_size_px=256, cube_size_px=256)
+        lamp = next(lamp for lamp in scene.lamps if lamp.kind == gnomon.LampKind.SUN)
+        for intensity in (1.0, 2.0):
+            lamp.intensity = intensity
+            # Also the first picture after a change shows it.
+            first, is_complete = renderer.refine(1e-4)
+            self.assertFalse(is_complete)
+            for _ in range(1000):
+                picture, is_complete = renderer.refine(0.05)
+                if is_complete:
+                    break
+            complete = renderer.render()
+            self.assertTrue((picture == complete).all())
+            self.assertLess(abs(first.mean() / complete.mean() - 1), 0.05)
+        with self.assertRaisesRegex(gnomon.DeviceError, "budget"):
+            renderer.refine(0.0)
+
+    def test_settings_are_described(self):
+        descriptions = gnomon.Renderer.descriptions()
+        self.assertEqual({name: each.type for name, each in descriptions.items()}, gnomon.Renderer.__annotations__)
+        offline = gnomon.Renderer.offline(self.device, square_scene(), (16, 9), sample_count=64)
+        for name, each in descriptions.items():
+            self.assertEqual(getattr(offline, name), each.default, name)
+            self.assertTrue(each.label and each.sentence, name)
+            if each.type in ("int", "float"):
+                with self.assertRaises((gnomon.InvalidEdit, TypeError)):
+                    setattr(offline, name, type(each.default)(2 * each.max + 1))
+            elif each.type == "bool":
+                self.assertEqual(len(each.words), 2)
+            elif each.words and "Literal" in each.type:
+                for word in each.words:
+                    setattr(offline, name, word)
+        self.assertEqual(descriptions["shadow_kind"].words, [kind.lower() for kind in gnomon.ShadowKind.__members__])
+        self.assertEqual(list(descriptions)[0], "sample_count")
+
     def test_error_against_rays(self):
         scene = square_scene()
         picture = gnomon.Renderer(self.device, scene, (32, 18), **SMALL).render()

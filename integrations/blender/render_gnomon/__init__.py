@@ -10,7 +10,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import closed, engine, lamps, materials, world
+from . import closed, engine, lamps, materials, viewport, world
 
 bl_info = {
     "name": "Gnomon",
@@ -327,9 +327,9 @@ class Export:
     def finish(self):
         render = self.scene.render
         transform, exposure = view_of(self.scene, self.report)
-        scale = render.resolution_percentage / 100
+        width, height = engine.picture_size(render)
         command = ['gnomon', 'render', os.path.basename(self.path), '-o', 'picture.png', '--size',
-                   f"{int(render.resolution_x * scale)}x{int(render.resolution_y * scale)}", '--view', transform,
+                   f"{width}x{height}", '--view', transform,
                    '--background', 'none' if render.film_transparent else 'world']
         if exposure != 0:
             command += ['--exposure', f"{exposure:.6g}"]
@@ -441,11 +441,13 @@ class GNOMON_PT_report(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return bool(context.window_manager.gnomon_report)
+        return bool(context.window_manager.gnomon_report or viewport.remarks())
 
     def draw(self, context):
         for line in context.window_manager.gnomon_report.splitlines():
             self.layout.label(text=line)
+        for line in viewport.remarks():
+            self.layout.label(text=line, icon='VIEW3D')
 
 
 def register_panel():

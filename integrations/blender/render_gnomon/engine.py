@@ -13,6 +13,8 @@ import tempfile
 import bpy
 import numpy
 
+from . import settings, viewport
+
 EXPORT = os.path.join(os.path.dirname(__file__), 'export_scene.py')
 
 
@@ -40,22 +42,72 @@ def loaded(gnomon, folder, facts):
     return scene
 
 
+class Cancelled(Exception):
+    pass
+
+
+class Pass:
+    """A pass of Blender, and the layer of Gnomon that it shows."""
+
+    def __init__(self, name, channels, kind, option, layer):
+        self.name = name
+        self.channels = channels
+        self.kind = kind
+        self.option = option
+        self.layer = layer
+
+    def is_of(self, view_layer):
+        return self.option is None or getattr(view_layer, self.option)
+
+
+PASSES = (
+    Pass('Combined', 'RGBA', 'COLOR', None, 'combined'),
+    Pass('Depth', 'Z', 'VALUE', 'use_pass_z', 'depth'),
+    Pass('Position', 'XYZ', 'VECTOR', 'use_pass_position', 'position'),
+    Pass('Normal', 'XYZ', 'VECTOR', 'use_pass_normal', 'normal'),
+    Pass('DiffCol', 'RGB', 'COLOR', 'use_pass_diffuse_color', 'albedo'),
+    Pass('Emit', 'RGB', 'COLOR', 'use_pass_emit', 'emission'),
+    Pass('Env', 'RGB', 'COLOR', 'use_pass_environment', 'world'),
+)
+
+
+def values_of(render_pass, layer):
+    """A layer as Blender has it: rows from the bottom, +Z up instead of +Y."""
+    if render_pass.kind == 'VECTOR':
+        x, y, z = numpy.moveaxis(layer, -1, 0)
+        layer = numpy.stack([x, -z, y], axis=-1)
+    return layer[::-1].reshape(-1, len(render_pass.channels))
+
+
+def picture_size(render):
+    return render.resolution_x * render.resolution_percentage // 100, render.resolution_y * render.resolution_percentage // 100
+
+
+def region_of(render, width, height):
+    """(left, bottom, right, top) of the part of the picture that is rendered, pixels."""
+    if not render.use_border:
+        return 0, 0, width, height
+    # Blender multiplies floats.
+    corners = numpy.array([render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y], numpy.float32)
+    return tuple(int(edge) for edge in corners * numpy.array([width, height, width, height], numpy.float32))
+
+
 class GnomonEngine(bpy.types.RenderEngine):
     bl_idname = 'GNOMON'
     bl_label = "Gnomon"
     bl_use_preview = False
-    # The viewport is EEVEE's.
+    # Material Preview is EEVEE's.
     bl_use_eevee_viewport = True
 
     def render(self, depsgraph):
-        try:
-            import gnomon
-        except ImportError as error:
-            self.fail(f"its Python module is not installed for Blender's Python (doc/from-blender.md): {error}")
+        if settings.gnomon is None:
+            self.fail(f"its Python module is not installed for Blender's Python (doc/from-blender.md): {settings.MISSING}")
             return
         try:
-            self.render_picture(gnomon, depsgraph)
-        except (ExportFailed, gnomon.Error) as error:
+            self.render_picture(settings.gnomon, depsgraph)
+        except Cancelled:
+            pass
+        except (ExportFailed, settings.gnomon.Error) as error:
             self.fail(str(error))
 
     def fail(self, reason):
@@ -65,88 +117,83 @@ class GnomonEngine(bpy.types.RenderEngine):
     def render_picture(self, gnomon, depsgraph):
         scene = depsgraph.scene
         render = scene.render
-        scale = render.resolution_percentage / 100
-        width, height = int(render.resolution_x * scale), int(render.resolution_y * scale)
+        width, height = picture_size(render)
         self.update_stats("Gnomon", "Exporting the scene")
         with tempfile.TemporaryDirectory() as folder:
             facts = exported(depsgraph, folder)
             drawn = loaded(gnomon, folder, facts)
-        if self.test_break():
-            return
         remarks = facts['report'] + drawn.warnings
-        if render.use_border:
-            remarks.append("render region: the whole picture is drawn")
-        self.update_progress(0.2)
-        self.update_stats("Gnomon", "Drawing")
+        sample_count = scene.gnomon.sample_count
+        passes = [each for each in PASSES if each.is_of(depsgraph.view_layer)]
+
+        def tell(samples_drawn):
+            if self.test_break():
+                raise Cancelled
+            self.update_progress(samples_drawn / sample_count)
+            self.update_stats("Gnomon", f"Sample {samples_drawn} of {sample_count}")
+
+        tell(0)
         renderer = gnomon.Renderer.offline(
-            gnomon.Device(), drawn, (width, height), scene.gnomon.sample_count, background=None if render.film_transparent else 'world')
-        layers = renderer.layers(['combined', 'depth', 'normal', 'albedo'])
+            gnomon.Device(), drawn, (width, height), sample_count, **settings.chosen(scene.gnomon),
+            background=None if render.film_transparent else 'world')
+        if len(passes) == 1:
+            layers = {'combined': renderer.render(progress=tell)}
+        else:
+            layers = renderer.layers([each.layer for each in passes], progress=tell)
         report = renderer.report()
         remarks += report.warnings + report.limits
-        self.write(layers, width, height)
+        self.write(passes, layers, region_of(render, width, height))
         for remark in remarks:
             self.report({'WARNING'}, f"Gnomon: {remark}")
-        memory_mib = report.memory_bytes / 2**20
+        memory_mib = report.memory_bytes / settings.MIB
         self.update_memory_stats(memory_used=memory_mib, memory_peak=memory_mib)
-        self.update_stats("Gnomon", f"{len(remarks)} things are not drawn as in Blender" if remarks else "")
+        self.update_stats("Gnomon", f"{len(remarks)} remarks" if remarks else "")
         bpy.context.window_manager.gnomon_report = "\n".join(remarks)
 
-    def write(self, layers, width, height):
-        # World space of files has +Y up.
-        x, y, z = numpy.moveaxis(layers['normal'], -1, 0)
-        values = {'Combined': layers['combined'], 'Depth': layers['depth'], 'Normal': numpy.stack([x, -z, y], axis=-1),
-                  'DiffCol': layers['albedo']}
-        result = self.begin_result(0, 0, width, height)
-        for each in result.layers[0].passes:
-            if each.name in values:
-                # Rows from the bottom.
-                each.rect = values[each.name][::-1].reshape(-1, each.channels)
+    def write(self, passes, layers, region):
+        left, bottom, right, top = region
+        result = self.begin_result(0, 0, right - left, top - bottom)
+        written = result.layers[0].passes
+        for each in passes:
+            layer = layers[each.layer]
+            height = layer.shape[0]
+            written[each.name].rect = values_of(each, layer[height - top:height - bottom, left:right])
         self.end_result(result)
 
+    def view_update(self, context, depsgraph):
+        if settings.gnomon is None:
+            self.update_stats("Gnomon", f"its Python module is not installed for Blender's Python: {settings.MISSING}")
+            return
+        if getattr(self, 'viewport', None) is None:
+            self.viewport = viewport.Viewport()
+        self.viewport.update(context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        if getattr(self, 'viewport', None) is not None:
+            self.viewport.draw(self, context, depsgraph)
+
+    def __del__(self):
+        if getattr(self, 'viewport', None) is not None:
+            self.viewport.end()
+
     def update_render_passes(self, scene, layer):
-        self.register_pass(scene, layer, 'Combined', 4, 'RGBA', 'COLOR')
-        if layer.use_pass_z:
-            self.register_pass(scene, layer, 'Depth', 1, 'Z', 'VALUE')
-        if layer.use_pass_normal:
-            self.register_pass(scene, layer, 'Normal', 3, 'XYZ', 'VECTOR')
-        if layer.use_pass_diffuse_color:
-            self.register_pass(scene, layer, 'DiffCol', 3, 'RGB', 'COLOR')
+        for each in PASSES:
+            if each.is_of(layer):
+                self.register_pass(scene, layer, each.name, len(each.channels), each.channels, each.kind)
 
 
-class GnomonSettings(bpy.types.PropertyGroup):
-    sample_count: bpy.props.IntProperty(name="Samples", default=64, min=1, max=65536, description="Samples of each pixel")
-
-
-class EnginePanel:
-    bl_space_type = 'PROPERTIES'
-    bl_region_type = 'WINDOW'
-    COMPAT_ENGINES = {'GNOMON'}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
-
-
-class GNOMON_PT_sampling(EnginePanel, bpy.types.Panel):
-    bl_context = 'render'
-    bl_label = "Sampling"
-
-    def draw(self, context):
-        self.layout.use_property_split = True
-        self.layout.prop(context.scene.gnomon, 'sample_count')
-
-
-class GNOMON_PT_passes(EnginePanel, bpy.types.Panel):
+class GNOMON_PT_passes(settings.EnginePanel, bpy.types.Panel):
     bl_context = 'view_layer'
     bl_label = "Passes"
 
     def draw(self, context):
         self.layout.use_property_split = True
-        for name in ('use_pass_z', 'use_pass_normal', 'use_pass_diffuse_color'):
-            self.layout.prop(context.view_layer, name)
+        for each in PASSES:
+            if each.option is not None:
+                self.layout.prop(context.view_layer, each.option)
 
 
-CLASSES = (GnomonSettings, GnomonEngine, GNOMON_PT_sampling, GNOMON_PT_passes)
+CLASSES = (GnomonEngine, GNOMON_PT_passes)
 
 
 def shared_panels():
@@ -158,16 +205,17 @@ def shared_panels():
 
 
 def register():
+    settings.register()
     for each in CLASSES:
         bpy.utils.register_class(each)
-    bpy.types.Scene.gnomon = bpy.props.PointerProperty(type=GnomonSettings)
     for panel in shared_panels():
         panel.COMPAT_ENGINES.add('GNOMON')
 
 
 def unregister():
+    viewport.end_all()
     for panel in shared_panels():
         panel.COMPAT_ENGINES.discard('GNOMON')
-    del bpy.types.Scene.gnomon
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)
+    settings.unregister()

@@ -32,13 +32,7 @@ if has_picture:
     # Gnomon's Python module reads no pictures of worlds.
     picture = f"{folder}/world.hdr"
     _, remarks = world.extras_of(scene.world, picture, scene.gnomon_export.world_width, True)
-    image = bpy.data.images.load(picture)
-    pixels = numpy.empty(4 * image.size[0] * image.size[1], numpy.float32)
-    image.pixels.foreach_get(pixels)
-    texels = pixels.reshape(image.size[1], image.size[0], 4)[::-1, :, :3]
-    # Blender reads the middle of each step of RGBE, and `gnomon render` its lower end.
-    _, exponent = numpy.frexp(texels.max(axis=-1, keepdims=True))
-    numpy.save(f"{folder}/world.npy", numpy.maximum(texels - numpy.ldexp(numpy.float32(0.5), exponent - 8), 0))
+    numpy.save(f"{folder}/world.npy", world.radiance_of_picture(picture))
     scene['gnomon_world'] = [0.0, 0.0, 0.0]
 bpy.ops.export_scene.gltf(filepath=f"{folder}/scene.glb", use_active_scene=True, export_current_frame=True, export_animations=False)
 # The last line is a command, and the view is that of Blender.

@@ -81,3 +81,24 @@ def extras_of(lamp):
         if factor != 1.0 and name in ('diffuse', 'specular'):
             remarks.append(f"its {name} factor of {factor:.3g} is not drawn")
     return extras, remarks
+
+
+def properties_of(lamp):
+    """(properties, remarks): those of gnomon.Scene.add_lamp for a lamp, and what of the lamp is not drawn."""
+    extras, remarks = extras_of(lamp)
+    color, energy, light_remarks = light_of(lamp)
+    remarks += [remark for remark in light_remarks if remark not in remarks]
+    values = {'name': lamp.name, 'kind': lamp.type, 'color': color, 'intensity': energy}
+    if lamp.type == 'SUN':
+        values['angle'] = extras.get('gnomon_angle', 0.0)
+    if lamp.type in ('POINT', 'SPOT'):
+        values.update(intensity=energy / (4 * math.pi), radius=extras.get('gnomon_radius', 0.0))
+    if lamp.type == 'SPOT':
+        values.update(spot_outer_angle=lamp.spot_size / 2, spot_blend=lamp.spot_blend)
+    if lamp.type == 'AREA':
+        if 'gnomon_lamp' in extras:
+            values.update(area_shape='ELLIPSE' if lamp.shape in ('DISK', 'ELLIPSE') else 'RECTANGLE', area_size_x=extras['gnomon_size_x'],
+                          area_size_y=extras['gnomon_size_y'])
+        else:
+            values['intensity'] = 0.0
+    return values, remarks

@@ -6,6 +6,7 @@ import os
 import urllib.parse
 
 import bpy
+import numpy
 from mathutils import Euler, Matrix
 
 PICTURE_WIDTH_MAX = 8192
@@ -110,3 +111,14 @@ def extras_of(world, path, width, is_y_up):
     bake(world, path, picture_width(world, width), is_y_up)
     # The extra is a URI.
     return {'gnomon_world': urllib.parse.quote(os.path.basename(path))}, remarks
+
+
+def radiance_of_picture(path):
+    """Height x width x 3, with the top row first: the picture as `gnomon render` reads it."""
+    image = bpy.data.images.load(path)
+    pixels = numpy.empty(4 * image.size[0] * image.size[1], numpy.float32)
+    image.pixels.foreach_get(pixels)
+    texels = pixels.reshape(image.size[1], image.size[0], 4)[::-1, :, :3]
+    # Blender reads the middle of each step of RGBE, and `gnomon render` its lower end.
+    _, exponent = numpy.frexp(texels.max(axis=-1, keepdims=True))
+    return numpy.maximum(texels - numpy.ldexp(numpy.float32(0.5), exponent - 8), 0)

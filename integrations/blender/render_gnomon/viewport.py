@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: MIT
+"""The viewport: pictures that a thread draws, shown as a texture.
+
+Blender's main thread reads the depsgraph. A thread of each viewport has a device of its own, edits its scene and refines its picture, because
+a device makes its context current on its thread, and Blender has its own on the main thread.
+"""
+
+import math
+import os
+import subprocess
+import tempfile
+import threading
+
+import bpy
+import gpu
+import numpy
+from gpu_extras.presets import draw_texture_2d
+from mathutils import Matrix
+
+from . import collect, mirror, settings, world
+
+BAKE = os.path.join(os.path.dirname(__file__), 'bake_world.py')
+# Of a world's picture, texels.
+WORLD_WIDTH = 512
+# Of each picture that is shown while it is refined.
+SECONDS = 0.1
+# Between two looks for new pictures.
+POLL_SECONDS = 0.02
+# A part of a view that is far from its centre is cut out of a larger picture.
+ENLARGED_MAX = 4.0
+
+
+class View:
+    """A camera for a part of a picture.
+
+    size: of the picture that is drawn, pixels; offset: of the region's lower left corner in it; matrix: world from camera;
+    camera: properties of a gnomon.Camera, without enumerators
+    """
+
+    def __init__(self, region, region_3d):
+        width, height = region.width, region.height
+        projection = region_3d.window_matrix
+        self.matrix = collect.matrix_of(region_3d.view_matrix.inverted())
+        scale_x, scale_y = projection[0][0], projection[1][1]
+        z, w = projection[2][2], projection[2][3]
+        self.is_perspective = projection[3][3] == 0.0
+        if not self.is_perspective:
+            self.size, self.offset = (width, height), (0, 0)
+            shift = Matrix.Translation((-projection[0][3] / scale_x, -projection[1][3] / scale_y, 0.0))
+            self.matrix = collect.matrix_of(region_3d.view_matrix.inverted() @ shift)
+            self.camera = {'half_width': 1 / scale_x, 'half_height': 1 / scale_y, 'near': (w + 1) / z, 'far': (w - 1) / z}
+            return
+        # The frustum is symmetrical about the axis, and the region is a part of its picture.
+        sizes = []
+        for length, shift in ((width, projection[0][2]), (height, projection[1][2])):
+            whole = round(length * min(1 + abs(shift), ENLARGED_MAX))
+            sizes.append((whole, whole - length if shift > 0 else 0))
+        self.size, self.offset = zip(*sizes)
+        self.camera = {'vertical_angle': 2 * math.atan(self.size[1] / height / scale_y), 'near': w / (z - 1), 'far': w / (z + 1)}
+
+    def key(self):
+        return self.size, self.offset, self.is_perspective, tuple(self.camera.values()), self.matrix.tobytes()
+
+
+class Painter:
+    """A thread that draws one viewport. What Blender's thread wants is put into `wanted`, and what it may show is in `picture`."""
+
+    def __init__(self):
+        self.condition = threading.Condition()
+        self.wanted = {}
+        self.wanted_count = 0
+        self.is_ended = False
+        # (array, View, whether it is complete)
+        self.picture = None
+        # wanted_count of the picture.
+        self.shown_count = 0
+        self.error = None
+        self.remarks = []
+        self.is_new = False
+        self.samples = 0
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+
+    def want(self, **wanted):
+        with self.condition:
+            self.wanted.update(wanted)
+            self.wanted_count += 1
+            self.condition.notify()
+
+    def end(self):
+        with self.condition:
+            self.is_ended = True
+            self.condition.notify()
+
+    def take_wanted(self, is_idle):
+        with self.condition:
+            while is_idle and not self.wanted and not self.is_ended:
+                self.condition.wait()
+            wanted, self.wanted = self.wanted, {}
+            return wanted, self.wanted_count
+
+    def publish(self, **values):
+        with self.condition:
+            for name, value in values.items():
+                setattr(self, name, value)
+            self.is_new = True
+
+    def run(self):
+        try:
+            self.paint(settings.gnomon)
+        except Exception as error:
+            self.publish(error=f"{type(error).__name__}: {error}")
+
+    def paint(self, gnomon):
+        shown = mirror.Mirror(gnomon)
+        device = renderer = view = None
+        is_idle, values = True, None
+        while True:
+            wanted, count = self.take_wanted(is_idle)
+            if self.is_ended:
+                return
+            if 'content' in wanted:
+                shown.show(wanted['content'])
+            if 'view' in wanted:
+                view = wanted['view']
+                kind = gnomon.CameraKind.PERSPECTIVE if view.is_perspective else gnomon.CameraKind.ORTHOGRAPHIC
+                shown.camera.edit(kind=kind, **view.camera)
+                shown.eye.parent_from_node = view.matrix
+            values = wanted.get('settings', values)
+            is_idle = view is None or values is None
+            if is_idle:
+                continue
+            # A setting that is no longer set has its default again.
+            if renderer is None or set(values) != names:
+                del renderer
+                device = device or gnomon.Device()
+                renderer, names = gnomon.Renderer(device, shown.scene, view.size, **values), set(values)
+            elif 'settings' in wanted:
+                for name, value in values.items():
+                    setattr(renderer, name, value)
+            if renderer.size != view.size:
+                renderer.size = view.size
+            picture, is_idle = renderer.refine(SECONDS, shown.eye)
+            report = renderer.report()
+            self.publish(picture=(picture, view, is_idle), shown_count=count, samples=report.sample_count, remarks=report.warnings + report.limits)
+
+
+def baked(world_of_scene, done):
+    """Bakes the picture of a world by a second Blender, and calls done(array or None, error) on a thread."""
+    folder = tempfile.TemporaryDirectory()
+    bpy.data.libraries.write(f"{folder.name}/world.blend", {world_of_scene}, path_remap='ABSOLUTE')
+    command = [bpy.app.binary_path, '-b', '--factory-startup', '--python-exit-code', '1', '-P', BAKE, '--', folder.name, str(WORLD_WIDTH)]
+
+    def wait():
+        with folder:
+            finished = subprocess.run(command, capture_output=True, text=True, check=False)
+            if finished.returncode != 0:
+                done(None, (finished.stdout + finished.stderr).strip()[-1000:])
+            else:
+                done(numpy.load(f"{folder.name}/world.npy"), None)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+class Viewport:
+    """One viewport of Blender. Its functions are called on Blender's thread."""
+
+    all = []
+
+    def __init__(self):
+        self.painter = Painter()
+        self.collector = collect.Collector()
+        self.content = None
+        self.view_key = None
+        self.settings = None
+        self.texture = None
+        self.shown = None
+        # Of the world: what it was made from, set_world's arguments, and the number of the bake that is running.
+        self.world = None
+        self.bake_count = 0
+        self.remarks = []
+        Viewport.all.append(self)
+        if not bpy.app.timers.is_registered(poll):
+            bpy.app.timers.register(poll, persistent=True)
+
+    def end(self):
+        self.painter.end()
+        if self in Viewport.all:
+            Viewport.all.remove(self)
+
+    def update(self, context, depsgraph):
+        scene = depsgraph.scene
+        is_first = self.content is None
+        self.content = self.collector.content(depsgraph, context.space_data)
+        if is_first or any(update.id.bl_rna.identifier in ('World', 'ShaderNodeTree', 'Scene') or
+                           update.id == scene.world for update in depsgraph.updates):
+            self.update_world(scene.world)
+        self.content.world = self.world
+        self.painter.want(content=self.content)
+
+    def update_world(self, blender_world):
+        self.bake_count += 1
+        radiance = world.constant_radiance(blender_world)
+        if radiance is not None:
+            self.set_world({'color': tuple(max(c, 0.0) for c in radiance)})
+            return
+        number = self.bake_count
+
+        def done(picture, error):
+            if number != self.bake_count:
+                return
+            if error is not None:
+                self.painter.publish(error=f"the world: {error}")
+                return
+            self.set_world({'picture': picture})
+            self.content = mirror.Content(**{**vars(self.content), 'world': self.world})
+            self.painter.want(content=self.content)
+
+        baked(blender_world.original, done)
+
+    def set_world(self, values):
+        if self.world is None or 'picture' in values or values != self.world:
+            self.world = values
+
+    def draw(self, engine, context, depsgraph):
+        view = View(context.region, context.region_data)
+        if view.key() != self.view_key:
+            self.view_key = view.key()
+            self.painter.want(view=view)
+        # The depsgraph has older ones.
+        scene = context.scene
+        chosen = {'sample_count': scene.gnomon.sample_count, 'background': None if scene.render.film_transparent else 'world',
+                  **settings.chosen(scene.gnomon)}
+        if chosen != self.settings:
+            self.settings = chosen
+            self.painter.want(settings=chosen)
+        with self.painter.condition:
+            picture, error, samples = self.painter.picture, self.painter.error, self.painter.samples
+        if error is not None:
+            engine.update_stats("Gnomon", error)
+        elif picture is not None:
+            remarks = len(self.collector.remarks) + len(self.painter.remarks)
+            engine.update_stats("Gnomon", f"{samples} of {self.settings['sample_count']} samples" +
+                                (f", {remarks} remarks" if remarks else ""))
+        if picture is None:
+            return
+        if picture is not self.shown:
+            self.shown = picture
+            self.texture = texture_of(*picture[:2], context.region)
+        gpu.state.blend_set('ALPHA_PREMULT')
+        engine.bind_display_space_shader(depsgraph.scene)
+        draw_texture_2d(self.texture, (0, 0), context.region.width, context.region.height)
+        engine.unbind_display_space_shader()
+        gpu.state.blend_set('NONE')
+
+
+def texture_of(pixels, view, region):
+    """The region's part of a picture, linear."""
+    left, bottom = view.offset
+    height = pixels.shape[0]
+    width, rows = view.size[0], view.size[1]
+    part = pixels[::-1][bottom:min(bottom + region.height, rows), left:min(left + region.width, width)]
+    part = numpy.ascontiguousarray(part)
+    data = gpu.types.Buffer('FLOAT', part.size, part.reshape(-1))
+    return gpu.types.GPUTexture((part.shape[1], part.shape[0]), format='RGBA16F', data=data)
+
+
+def poll():
+    """Asks for a new drawing of the viewports that have new pictures."""
+    is_new = False
+    for viewport in Viewport.all:
+        with viewport.painter.condition:
+            is_new = is_new or viewport.painter.is_new
+            viewport.painter.is_new = False
+    if is_new:
+        settings.redraw_viewports()
+    return POLL_SECONDS if Viewport.all else None
+
+
+def remarks():
+    """What the viewports do not draw as in Blender."""
+    return list(dict.fromkeys(text for each in Viewport.all for text in each.collector.remarks + each.painter.remarks))
+
+
+def end_all():
+    """Ends all threads. A device must not outlive its thread."""
+    ended = list(Viewport.all)
+    for viewport in ended:
+        viewport.end()
+    for viewport in ended:
+        viewport.painter.thread.join()

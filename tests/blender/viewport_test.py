@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""The viewport, in a window: run by check_blender under Xvfb: blender --factory-startup -P viewport_test.py -- FOLDER
+
+After edits of all kinds, the complete picture is that of a scene that is collected anew, bit for bit, and Blender's window shows it.
+"""
+
+import importlib
+import os
+import sys
+import time
+import traceback
+
+import bpy
+import numpy
+
+FOLDER = sys.argv[-1]
+SECONDS_MAX = 300
+bpy.context.preferences.view.show_splash = False
+bpy.ops.preferences.addon_enable(module='render_gnomon')
+collect, mirror, settings, viewport = (importlib.import_module(f'render_gnomon.{name}') for name in ('collect', 'mirror', 'settings', 'viewport'))
+
+
+def area():
+    return next(each for each in bpy.context.window.screen.areas if each.type == 'VIEW_3D')
+
+
+def region():
+    return next(each for each in area().regions if each.type == 'WINDOW')
+
+
+def space():
+    return area().spaces.active
+
+
+def complete(old=None):
+    """Waits for a complete picture that is another than `old`. Yields until there is one."""
+    while True:
+        shown = viewport.Viewport.all[0] if viewport.Viewport.all else None
+        if shown is not None and shown.painter.error is not None:
+            raise RuntimeError(shown.painter.error)
+        picture = shown and shown.painter.picture
+        if picture and picture[2] and picture is not old and picture is shown.shown and \
+                shown.painter.shown_count == shown.painter.wanted_count:
+            return picture
+        yield
+
+
+def expected():
+    """The picture of a renderer and a scene that are made anew."""
+    shown = viewport.Viewport.all[0]
+    collected = collect.Collector().content(bpy.context.evaluated_depsgraph_get(), space())
+    collected.world = shown.content.world
+    fresh = mirror.Mirror(settings.gnomon)
+    fresh.show(collected)
+    view = viewport.View(region(), space().region_3d)
+    painter = Fresh(fresh, view, shown.settings)
+    return painter.picture
+
+
+class Fresh:
+    """Draws on a thread of its own: Blender has a context on this one."""
+
+    def __init__(self, shown, view, values):
+        import threading
+        self.picture = None
+        thread = threading.Thread(target=self.draw, args=(shown, view, values))
+        thread.start()
+        thread.join()
+
+    def draw(self, shown, view, values):
+        gnomon = settings.gnomon
+        kind = gnomon.CameraKind.PERSPECTIVE if view.is_perspective else gnomon.CameraKind.ORTHOGRAPHIC
+        shown.camera.edit(kind=kind, **view.camera)
+        shown.eye.parent_from_node = view.matrix
+        device = gnomon.Device()
+        renderer = gnomon.Renderer(device, shown.scene, view.size, **values)
+        self.picture = renderer.render(shown.eye)
+        del renderer, device
+
+
+def check(old=None):
+    picture = yield from complete(old)
+    own = expected()
+    assert picture[0].shape == own.shape, (picture[0].shape, own.shape)
+    error = abs(picture[0] - own).max()
+    assert error == 0, f"the picture differs by {error}"
+    return picture
+
+
+def screenshot():
+    path = f"{FOLDER}/window.png"
+    bpy.ops.screen.screenshot(filepath=path)
+    image = bpy.data.images.load(path)
+    pixels = numpy.empty(4 * image.size[0] * image.size[1], numpy.float32)
+    image.pixels.foreach_get(pixels)
+    bpy.data.images.remove(image)
+    there = region()
+    return pixels.reshape(image_size(path)[1], -1, 4)[there.y:there.y + there.height, there.x:there.x + there.width, :3]
+
+
+def image_size(path):
+    with open(path, 'rb') as file:
+        header = file.read(24)
+    return int.from_bytes(header[16:20], 'big'), int.from_bytes(header[20:24], 'big')
+
+
+def steps():
+    scene = bpy.context.scene
+    scene.render.engine = 'GNOMON'
+    scene.gnomon.sample_count = 2
+    scene.gnomon.map_size_px = scene.gnomon.cube_size_px = 256
+    scene.view_settings.view_transform = 'Standard'
+    cube, lamp = bpy.data.objects['Cube'], bpy.data.objects['Light']
+    space().overlay.show_overlays = space().show_gizmo = False
+    space().show_region_header = space().show_region_toolbar = False
+    yield
+    space().shading.type = 'RENDERED'
+    picture = yield from check()
+
+    # Blender's window shows it, as it encodes linear light.
+    for _ in range(5):
+        yield
+    linear = picture[0][::-1, :, :3]
+    encoded = numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
+    error = numpy.quantile(abs(screenshot() - numpy.clip(encoded, 0, 1)), 0.95)
+    # It is 0.003, less than a step of 8 bits. Blender draws a text over a hundredth of the picture.
+    assert error < 0.004, error
+
+    def moved():
+        lamp.location.x += 1
+
+    def colored():
+        cube.data.materials[0].node_tree.nodes['Principled BSDF'].inputs['Base Color'].default_value = (0.9, 0.1, 0.1, 1)
+
+    def added():
+        bpy.ops.mesh.primitive_plane_add(size=12, location=(0, 0, -1))
+
+    def modified():
+        cube.modifiers.new('bevel', 'BEVEL')
+
+    def instanced():
+        collection = bpy.data.collections.new('many')
+        collection.objects.link(cube)
+        for x in (-3, 3):
+            empty = bpy.data.objects.new('empty', None)
+            empty.instance_type, empty.instance_collection = 'COLLECTION', collection
+            empty.location.x = x
+            scene.collection.objects.link(empty)
+
+    def edited():
+        cube.data.vertices[0].co.z += 1
+        cube.data.update()
+
+    def hidden():
+        bpy.data.objects['Plane'].hide_set(True)
+
+    def strengthened():
+        scene.world.node_tree.nodes['Background'].inputs['Strength'].default_value = 3
+
+    def kind_changed():
+        lamp.data.type = 'SUN'
+
+    def set_samples():
+        scene.gnomon.sample_count = 3
+
+    def orthographic():
+        space().region_3d.view_perspective = 'ORTHO'
+
+    def shifted():
+        space().region_3d.view_perspective = 'CAMERA'
+        space().region_3d.view_camera_offset = (0.2, 0.1)
+
+    def textured():
+        image = bpy.data.images.new('noise', 16, 8)
+        image.pixels = numpy.random.default_rng(1).random(4 * 16 * 8)
+        tree = cube.data.materials[0].node_tree
+        node = tree.nodes.new('ShaderNodeTexImage')
+        node.image = image
+        tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Roughness'])
+
+    def painted():
+        image = bpy.data.images['noise']
+        image.pixels = 1 - numpy.array(image.pixels)
+        cube.data.materials[0].node_tree.update_tag()
+
+    def in_another_frame():
+        cube.location.x = 1
+        cube.keyframe_insert('location', frame=5)
+        scene.frame_set(5)
+
+    def undone():
+        bpy.ops.ed.undo_push(message="one")
+        bpy.data.objects['Camera'].data.lens = 90
+        bpy.data.objects['Cube'].scale *= 2
+        bpy.ops.ed.undo_push(message="two")
+        bpy.ops.ed.undo()
+        bpy.data.objects['Cube'].rotation_euler.z += 1
+
+    def removed():
+        bpy.data.objects.remove(bpy.data.objects['Cube'])
+
+    for change in (moved, colored, added, modified, instanced, edited, textured, painted, in_another_frame, strengthened, kind_changed, set_samples,
+                   orthographic, shifted, undone, hidden, removed):
+        before, begun = picture, time.monotonic()
+        change()
+        picture = yield from check(before)
+        assert picture[0].shape != before[0].shape or (picture[0] != before[0]).any(), f"{change.__name__} changes nothing"
+        print("as collected anew after:", change.__name__, f"{time.monotonic() - begun:.1f} s", flush=True)
+
+    # What is not drawn is named.
+    assert not viewport.remarks(), viewport.remarks()
+    bpy.ops.mesh.primitive_monkey_add()
+    material = bpy.data.materials.new('odd')
+    material.use_nodes = True
+    bpy.context.object.data.materials.append(material)
+    tree, principled = material.node_tree, material.node_tree.nodes['Principled BSDF']
+    tree.links.new(tree.nodes.new('ShaderNodeTexNoise').outputs[0], principled.inputs['Roughness'])
+    tree.links.new(tree.nodes.new('ShaderNodeValue').outputs[0], principled.inputs['Clearcoat'])
+    image = tree.nodes.new('ShaderNodeTexImage')
+    image.image = bpy.data.images['noise']
+    tree.links.new(tree.nodes.new('ShaderNodeMapping').outputs[0], image.inputs['Vector'])
+    tree.links.new(image.outputs['Color'], principled.inputs['Base Color'])
+    picture = yield from check(picture)
+    for text in ("'Roughness' comes from the nodes Noise Texture", "what 'Clearcoat' is linked to", "the mapping of 'Base Color'"):
+        assert any(text in each for each in viewport.remarks()), (text, viewport.remarks())
+    assert len(viewport.remarks()) == 3, viewport.remarks()
+
+    # A world that is not of one colour is baked.
+    tree = bpy.context.scene.world.node_tree
+    tree.links.new(tree.nodes.new('ShaderNodeTexSky').outputs[0], tree.nodes['Background'].inputs['Color'])
+    while not viewport.Viewport.all or 'picture' not in viewport.Viewport.all[0].content.world:
+        yield
+    yield from check(picture)
+
+    # Without a viewport, there is no thread.
+    thread = viewport.Viewport.all[0].painter.thread
+    space().shading.type = 'SOLID'
+    while thread.is_alive():
+        yield
+    assert not viewport.Viewport.all
+
+
+running = steps()
+start = time.monotonic()
+
+
+def step():
+    try:
+        next(running)
+        assert time.monotonic() - start < SECONDS_MAX, "the time is over"
+        return 0.05
+    except StopIteration:
+        print("viewport: OK", flush=True)
+    except Exception:
+        traceback.print_exc()
+    viewport.end_all()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    bpy.ops.wm.quit_blender()
+    return None
+
+
+bpy.app.timers.register(step, first_interval=1.0)
