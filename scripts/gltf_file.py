@@ -2,6 +2,7 @@
 """Used by scripts/animation, scripts/test_scenes and scripts/textured_scene: writes glTF files."""
 import base64
 import json
+import os
 import struct
 import zlib
 
@@ -84,9 +85,29 @@ class Gltf:
         return self.json["meshes"][-1]["primitives"][0], rows
 
     def write(self, path):
+        self._write(path, "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode())
+
+    def write_form(self, stem, form):
+        """Writes it as "data URI", "buffer beside", "GLB" or "GLB and buffer". Returns its path."""
+        path = stem + (".glb" if form.startswith("GLB") else ".gltf")
+        if form == "data URI":
+            self.write(path)
+            return path
+        if form != "GLB":
+            with open(stem + ".bin", "wb") as file:
+                file.write(self.bytes)
+        self._write(path, None if form == "GLB" else os.path.basename(stem) + ".bin")
+        return path
+
+    def _write(self, path, uri):
+        """No uri: the buffer is the GLB's."""
         self.json["scenes"] = [{"nodes": [i for i in range(len(self.json["nodes"]))
                                           if not any(i in node.get("children", []) for node in self.json["nodes"])]}]
-        uri = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
-        self.json["buffers"] = [{"uri": uri, "byteLength": len(self.bytes)}]
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(self.json, file)
+        self.json["buffers"] = [{"byteLength": len(self.bytes)} | ({"uri": uri} if uri else {})]
+        text = json.dumps(self.json).encode()
+        if path.endswith(".glb"):
+            chunks = [(b"JSON", text + b" " * (-len(text) % 4))] + ([] if uri else [(b"BIN\0", self.bytes + bytes(-len(self.bytes) % 4))])
+            body = b"".join(struct.pack("<I", len(data)) + kind + data for kind, data in chunks)
+            text = b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
+        with open(path, "wb") as file:
+            file.write(text)

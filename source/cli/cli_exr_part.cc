@@ -2,14 +2,18 @@
 #include "cli_exr_part.hh"
 
 #include "internal/cli_exr_file.hh"
-#include "internal/cli_picture_formats.hh"
+
+#include "output_file.hh"
+
+#include <fmt/format.h>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
 #include <ImfStringAttribute.h>
 
+#include <new>
 #include <stdexcept>
 
 namespace gnomon::cli {
@@ -32,27 +36,25 @@ static Imf::FrameBuffer frame_buffer(const ExrPart &part, glm::ivec2 first)
   return buffer;
 }
 
-static glm::ivec2 size_of(const Imath::Box2i &window)
-{
-  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
-  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
-}
-
 ExrPart read_exr_part(const fs::path &path, ExrContent content)
 {
   try {
-    Imf::InputFile input(path.c_str());
-    const Imf::Header &header = input.header();
+    ExrInput file(path);
+    file.check_memory(0);
+    const Imf::Header &header = file.file().header(0);
     const Imath::Box2i &whole = header.displayWindow();
     const Imath::Box2i &window = header.dataWindow();
-    ExrPart part{size_of(whole), size_of(window), {window.min.x - whole.min.x, window.min.y - whole.min.y}, {}, {}};
+    ExrPart part{size_of_window(whole),
+                 size_of_window(window),
+                 {window.min.x - whole.min.x, window.min.y - whole.min.y},
+                 {},
+                 {}};
     const glm::ivec2 end_px = part.first_px + part.size_px;
     if (part.first_px.x < 0 || part.first_px.y < 0 || end_px.x > part.whole_size_px.x ||
         end_px.y > part.whole_size_px.y) {
       throw std::runtime_error("has pixels outside of the picture");
     }
-    if (!input.isComplete()) {
+    if (!file.file().partComplete(0)) {
       throw std::runtime_error("is cut off");
     }
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
@@ -71,10 +73,14 @@ ExrPart read_exr_part(const fs::path &path, ExrContent content)
       }
     }
     if (content == ExrContent::All) {
+      Imf::InputPart input(file.file(), 0);
       input.setFrameBuffer(frame_buffer(part, {window.min.x, window.min.y}));
       input.readPixels(window.min.y, window.max.y);
     }
     return part;
+  }
+  catch (const std::bad_alloc &) {
+    throw output::TransientError(fmt::format("{}: there is not enough memory to read it", path.string()));
   }
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdint>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -33,6 +34,13 @@ FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
   const auto [after_last, last_error] = std::from_chars(has_last ? after_first + 1 : text.data(), end, last_);
   if (first_error != std::errc() || last_error != std::errc() || after_last != end || first_ < 0 || last_ < first_) {
     throw UsageError(fmt::format("--frames '{}' is neither A-B nor A with whole numbers 0 <= A <= B", text));
+  }
+  if (options_.step < 1) {
+    throw UsageError(fmt::format("--step {} is not 1 or more", options_.step));
+  }
+  constexpr std::int64_t count_max = std::int64_t(1) << 24U;
+  if ((std::int64_t(last_) - first_) / options_.step + 1 > count_max) {
+    throw UsageError(fmt::format("--frames '{}' are more than {} frames", text, count_max));
   }
   if (!name.empty() && count() > 1 && !has_place) {
     throw UsageError(fmt::format("-o '{}' has no # for the frame number; use a name such as frame_####.exr", name));

@@ -29,8 +29,8 @@ struct FrameOptions {
 class FrameSequence {
  public:
   /**
-   * \throws UsageError if the range is invalid, if there are several frames and the output's name has no #, or if it
-   * has one without a range
+   * \throws UsageError if the range is invalid or has more than 2^24 frames, if the step is below 1, if there are
+   * several frames and the output's name has no #, or if it has one without a range
    */
   FrameSequence(FrameOptions options, std::filesystem::path output);
 

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace gnomon::cli {
@@ -124,6 +125,9 @@ Picture read_picture(const fs::path &path, const std::string &layer)
 {
   try {
     return read_any_picture(path, layer);
+  }
+  catch (const std::bad_alloc &) {
+    throw output::TransientError(fmt::format("{}: there is not enough memory to read it", path.string()));
   }
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reads pictures from EXR files of any windows, layers, parts and numbers.
+#include "internal/cli_exr_file.hh"
 #include "internal/cli_picture_formats.hh"
 
 #include <fmt/format.h>
@@ -111,24 +112,25 @@ ExrLayer chosen(const std::vector<ExrLayer> &layers, const std::string &label)
   return layers.front();
 }
 
-glm::ivec2 size_of_window(const Imath::Box2i &window)
-{
-  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
-  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
-}
-
 /** \a read reads the pixels of \a data, rows from the bottom. Pixels outside of it are black. */
 template <typename Read>
 Picture picture_of_windows(const Imath::Box2i &display, const Imath::Box2i &data, const Read &read)
 {
   const glm::ivec2 data_size_px = size_of_window(data);
-  Picture stored{data_size_px, {}};
   const glm::ivec2 size_px = size_of_window(display);
+  Picture stored{data_size_px, {}};
   stored.pixels.assign(std::size_t(data_size_px.x) * std::size_t(data_size_px.y), glm::vec4(1.0F));
   read(stored);
   if (display == data) {
     return stored;
+  }
+  // So that a small file does not ask for all memory.
+  constexpr std::int64_t empty_pixels_max = 1 << 24U;
+  constexpr std::int64_t empty_pixels_per_pixel = 64;
+  const auto pixel_count = [](glm::ivec2 of) { return std::int64_t(of.x) * of.y; };
+  if (pixel_count(size_px) > std::max(empty_pixels_max, empty_pixels_per_pixel * pixel_count(data_size_px))) {
+    throw std::runtime_error(fmt::format("has {}x{} pixels in its display window, and {}x{} in its data window",
+                                         size_px.x, size_px.y, data_size_px.x, data_size_px.y));
   }
   Picture picture{size_px, {}};
   picture.pixels.assign(std::size_t(size_px.x) * std::size_t(size_px.y), glm::vec4(0.0F, 0.0F, 0.0F, 1.0F));
@@ -214,7 +216,8 @@ std::optional<Picture> read_exr_picture(const fs::path &path, const std::string 
   if (!Imf::isOpenExrFile(path.c_str())) {
     return std::nullopt;
   }
-  Imf::MultiPartInputFile file(path.c_str());
+  ExrInput input(path);
+  Imf::MultiPartInputFile &file = input.file();
   std::vector<ExrLayer> layers;
   bool is_deep = false;
   std::vector<std::string> channels;
@@ -238,6 +241,7 @@ std::optional<Picture> read_exr_picture(const fs::path &path, const std::string 
                 : fmt::format("has no channels R, G and B, and no channel Y; it has: {}", fmt::join(channels, ", ")));
   }
   const ExrLayer layer = chosen(layers, layer_label);
+  input.check_memory(layer.part);
   if (layer.has_chroma && file.parts() == 1) {
     return read_chroma(path, layer);
   }

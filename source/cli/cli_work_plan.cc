@@ -112,6 +112,11 @@ double add_parts(WorkPlan &plan, const WorkOfScene &work, double target_seconds)
   return work.cost.start_seconds + work.cost.sample_seconds * range_size * group_size / tile_count;
 }
 
+static FrameSequence frames_of(const WorkPlan &plan, const WorkPart &part, const std::string &output)
+{
+  return FrameSequence({.range = part.frames, .step = plan.frame_step}, output);
+}
+
 WorkPlan read_plan(const std::filesystem::path &path)
 {
   try {
@@ -128,6 +133,9 @@ WorkPlan read_plan(const std::filesystem::path &path)
       if (part.scene >= plan.scenes.size()) {
         throw std::runtime_error("names a scene that it does not have");
       }
+      for (const std::string &output : {part.output, plan.scenes[part.scene].pictures}) {
+        static_cast<void>(frames_of(plan, part, output));
+      }
     }
     return plan;
   }
@@ -141,11 +149,6 @@ void write_plan(const std::filesystem::path &path, const WorkPlan &plan)
   json document = to_json(plan);
   document["id"] = plan.id();
   write_json(path, document, 1);
-}
-
-static FrameSequence frames_of(const WorkPlan &plan, const WorkPart &part, const std::string &output)
-{
-  return FrameSequence({.range = part.frames, .step = plan.frame_step}, output);
 }
 
 std::vector<std::string> files_of(const WorkPlan &plan, const WorkPart &part)

@@ -205,11 +205,24 @@ class Importer {
            node.light < 0;
   }
 
-  /** Adds the node as a root without a transform, since the inverse of its own cannot be made. */
+  /**
+   * Adds the node without a transform, since the inverse of its own cannot be made, below the nearest ancestor whose
+   * inverse can be.
+   */
   void import_skin_alone(int index, Handle<Node> parent)
   {
-    const Handle<Node> handle = import_node(index, {}, glm::dmat4(1.0), glm::dmat4(1.0));
-    if (parent && !scene_.is_visible(parent)) {
+    bool is_visible = true;
+    const auto has_inverse = [&](Handle<Node> node) {
+      const glm::dmat4 world = scene_.world_from_node(node);
+      return is_usable(world) && glm::determinant(world) != 0.0;
+    };
+    while (parent && !has_inverse(parent)) {
+      is_visible = is_visible && scene_.nodes()[parent].is_visible;
+      parent = scene_.parent(parent);
+    }
+    const glm::dmat4 world = parent ? scene_.world_from_node(parent) : glm::dmat4(1.0);
+    const Handle<Node> handle = import_node(index, parent, glm::dmat4(1.0), world);
+    if (!is_visible) {
       scene_.edit(handle, [](Node &node) { node.is_visible = false; });
     }
   }
@@ -290,22 +303,29 @@ class Importer {
     node.name = scene_.nodes()[parent].name + '[' + std::to_string(instance) + ']';
     node.parent_from_node = parent_from_node;
     read_flags(file_.model.nodes[index], index, node);
+    // The parent's, which an animation may change.
+    node.is_visible = true;
+    const std::size_t first_deformed = scene_.deformed_meshes.size();
     import_meshes(index, world, node);
-    scene_.add(std::move(node), parent);
+    const Handle<Node> handle = scene_.add(std::move(node), parent);
+    set_deformed_node(index, handle, first_deformed);
+    things_.instances[index].push_back(handle);
   }
 
+  /** Each node with a skin or morph targets, and each instance of one, has meshes of its own. */
   void import_meshes(int index, const glm::mat4 &world, Node &added)
   {
     const Model::Node &node = file_.model.nodes[index];
     if (node.mesh < 0) {
       return;
     }
-    const bool is_own = is_deformed(file_.model, node) && !node.instances;
-    if (node.instances && is_deformed(file_.model, node)) {
-      warnings_.add(node_label(index), "its instances are drawn without skin and morph targets");
+    const bool has_skin = node.skin >= 0 && !node.instances;
+    if (node.skin >= 0 && node.instances) {
+      warnings_.add(node_label(index), "its instances are drawn without skin");
     }
+    const bool is_own = has_skin || has_targets(file_.model, node);
     const std::vector<Handle<Mesh>> own =
-        is_own ? meshes_.deformed_meshes_of(node.mesh, node.skin) : std::vector<Handle<Mesh>>();
+        is_own ? meshes_.deformed_meshes_of(node.mesh, has_skin ? node.skin : -1) : std::vector<Handle<Mesh>>();
     for (const Handle<Mesh> mesh : is_own ? own : meshes_.meshes_of(node.mesh)) {
       if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {
         warnings_.add_counted(node_label(index), 1, "object left out: it reaches beyond 1e12 m");

@@ -4,6 +4,7 @@
 #include "internal/image_decoders.hh"
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace gnomon::image {
@@ -39,7 +40,7 @@ std::vector<std::uint16_t> Decoder::read_rgba16()
   return wide;
 }
 
-std::unique_ptr<Decoder> open_decoder(std::span<const unsigned char> file)
+static std::unique_ptr<Decoder> open_format(std::span<const unsigned char> file)
 {
   switch (format_of(file)) {
     case Format::Png: return open_png(file);
@@ -48,6 +49,19 @@ std::unique_ptr<Decoder> open_decoder(std::span<const unsigned char> file)
     case Format::None: break;
   }
   throw Error(file.empty() ? "is empty" : "is none of PNG, JPEG and WebP");
+}
+
+std::unique_ptr<Decoder> open_decoder(std::span<const unsigned char> file)
+{
+  std::unique_ptr<Decoder> decoder = open_format(file);
+  // Deflate repeats 258 bytes by two bits at best, and a texel has a bit or more. WebP stores one color in no bits.
+  constexpr std::uint64_t texels_per_byte_max = std::uint64_t(8) * 1032;
+  const std::uint64_t texel_count = std::uint64_t(decoder->width()) * decoder->height();
+  if (format_of(file) != Format::Webp && texel_count / texels_per_byte_max > file.size()) {
+    throw Error("is cut off: " + std::to_string(decoder->width()) + 'x' + std::to_string(decoder->height()) +
+                " texels cannot be in " + std::to_string(file.size()) + " bytes");
+  }
+  return decoder;
 }
 
 }  // namespace gnomon::image

@@ -27,7 +27,10 @@ class Decoder {
   Decoder(const Decoder &) = delete;
   Decoder &operator=(const Decoder &) = delete;
 
-  /** At least 1. A header can state any size, so limit it before read_rgba8() and read_rgba16(). */
+  /**
+   * At least 1. A header can state any size that a file of its length can store, so limit it before read_rgba8() and
+   * read_rgba16().
+   */
   [[nodiscard]] std::uint32_t width() const
   {
     return width_;
@@ -58,7 +61,10 @@ class Decoder {
   }
 };
 
-/** Reads the header. \a file must outlive the decoder. \throws Error if it is damaged, or of another format. */
+/**
+ * Reads the header. \a file must outlive the decoder. \throws Error if it is damaged, of another format, or too short
+ * for its size
+ */
 [[nodiscard]] std::unique_ptr<Decoder> open_decoder(std::span<const unsigned char> file);
 
 }  // namespace gnomon::image

@@ -5,6 +5,10 @@
 
 #include "scene_world.hh"
 
+#include <fmt/format.h>
+
+#include <bit>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -94,6 +98,124 @@ TEST_F(ExrPictureTest, TheOnlyLayerIsReadAndOneOfSeveralIsNamed)
   write_channels("none.exr", spec, {"U", "V"});
   EXPECT_NE(error_of("none.exr").find("has no channels R, G and B, and no channel Y; it has: U, V"), std::string::npos)
       << error_of("none.exr");
+}
+
+std::string little_endian(std::uint32_t value)
+{
+  std::string bytes;
+  for (unsigned shift = 0; shift < 32; shift += 8) {
+    bytes += char(value >> shift & 0xffU);
+  }
+  return bytes;
+}
+
+/** An attribute of an EXR header that states \a size bytes, of which \a value is there. */
+std::string exr_attribute(const std::string &name, const std::string &type, const std::string &value,
+                          std::size_t size = 0)
+{
+  const auto stated = std::uint32_t(size > 0 ? size : value.size());
+  return name + '\0' + type + '\0' + little_endian(stated) + value;
+}
+
+/** The start of an EXR file of zeros: the headers, and a table whose chunks are all at the same place. */
+struct ExrStart {
+  glm::ivec2 size_px{8};
+  /** Coordinates of the last pixel of the display window. */
+  glm::ivec2 display_px{7};
+  char compression = 0;
+  int channel_count = 3;
+  std::string first_attribute;
+  int chunk_count = 8;
+
+  [[nodiscard]] std::string bytes() const
+  {
+    const auto window = [](glm::ivec2 last) {
+      return little_endian(0U) + little_endian(0U) + little_endian(std::uint32_t(last.x)) +
+             little_endian(std::uint32_t(last.y));
+    };
+    std::string channels;
+    const std::string names[] = {"B", "G", "R"};
+    for (int i = 0; i < channel_count; i++) {
+      const std::string name = i < 3 ? names[i] : fmt::format("a{:03}", i);
+      channels += name + '\0' + little_endian(2U) + little_endian(0U) + little_endian(1U) + little_endian(1U);
+    }
+    const std::string one = little_endian(std::bit_cast<std::uint32_t>(1.0F));
+    const std::string zero = little_endian(0U);
+    std::string text = "\x76\x2f\x31\x01" + little_endian(2U) + first_attribute +
+                       exr_attribute("channels", "chlist", channels + '\0') +
+                       exr_attribute("compression", "compression", std::string(1, compression)) +
+                       exr_attribute("dataWindow", "box2i", window(size_px - 1)) +
+                       exr_attribute("displayWindow", "box2i", window(display_px)) +
+                       exr_attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
+                       exr_attribute("pixelAspectRatio", "float", one) +
+                       exr_attribute("screenWindowCenter", "v2f", zero + zero) +
+                       exr_attribute("screenWindowWidth", "float", one) + '\0';
+    const auto at = std::uint32_t(text.size() + std::size_t(chunk_count) * 8);
+    for (int i = 0; i < chunk_count; i++) {
+      text += little_endian(at) + zero;
+    }
+    return text;
+  }
+};
+
+// Each asked for 1 to 14 GiB: OpenEXR allocates what a header states.
+TEST_F(ExrPictureTest, AskForNoMoreMemoryThanTheirBytesCanFill)
+{
+  const auto expect_refused = [&](const ExrStart &start, const std::string &reason) {
+    const std::string bytes = start.bytes();
+    std::ofstream(folder / "a.exr", std::ios::binary) << bytes;
+    EXPECT_NE(error_of("a.exr").find(reason), std::string::npos) << error_of("a.exr");
+    EXPECT_EQ(error_of("a.exr").find((folder / "a.exr").string()), 0U) << error_of("a.exr");
+    const test::Finished merged = run("merge a.exr -o merged.exr");
+    EXPECT_EQ(merged.status, 1);
+    EXPECT_NE(merged.err.find("a.exr: "), std::string::npos) << merged.err;
+  };
+  const std::size_t long_value = 0x7ffffff0;
+  for (const char *type : {"string", "floatvector", "stringvector", "unknown"}) {
+    ExrStart start;
+    start.first_attribute = exr_attribute("a", type, "abcd", long_value);
+    expect_refused(start, "its attribute 'a' has 2147483632 bytes");
+  }
+  ExrStart preview;
+  preview.first_attribute =
+      exr_attribute("preview", "preview", little_endian(20000U) + little_endian(20000U), 8 + 4 * 20000 * 20000);
+  expect_refused(preview, "its attribute 'preview' has 1600000008 bytes");
+
+  // Compressions by their number in the file, and lines of a chunk.
+  struct Compression {
+    int number;
+    int lines;
+  };
+  for (const Compression &compression :
+       {Compression{1, 1}, Compression{2, 1}, Compression{3, 16}, Compression{4, 32}, Compression{5, 16},
+        Compression{6, 32}, Compression{7, 32}, Compression{8, 32}, Compression{9, 256}}) {
+    ExrStart start;
+    start.size_px = {32768, 8192};
+    start.display_px = start.size_px - 1;
+    start.compression = char(compression.number);
+    start.chunk_count = start.size_px.y / compression.lines;
+    expect_refused(start, "bytes cannot be 32768x8192 pixels with 3 channels");
+  }
+  ExrStart many;
+  many.size_px = many.display_px = {32767, 8191};
+  many.channel_count = 5;
+  many.compression = 9;
+  many.chunk_count = 32;
+  expect_refused(many, "has 32767x8191 pixels with 5 channels, which are more than 1073741824 values");
+}
+
+TEST_F(ExrPictureTest, HaveALimitOfPixelsThatAreNotStored)
+{
+  OIIO::ImageSpec part = spec;
+  part.full_width = 4096;
+  part.full_height = 4096;
+  write_channels("a.exr", part, {"R", "G", "B"});
+  EXPECT_EQ(cli::read_picture(folder / "a.exr").size_px, glm::ivec2(4096));
+  part.full_height = 4097;
+  write_channels("a.exr", part, {"R", "G", "B"});
+  EXPECT_NE(error_of("a.exr").find("has 4096x4097 pixels in its display window, and 4x2 in its data window"),
+            std::string::npos)
+      << error_of("a.exr");
 }
 
 TEST(WorldRadiances, AreClampedWithNumberAndPlace)

@@ -130,6 +130,33 @@ TEST(WorkPlanTest, NamesOfPartsAndPictures)
   EXPECT_EQ(scene_name("out/{scene}/{scene}_#.exr", "../in/a.b.glb"), "out/a.b/a.b_#.exr");
 }
 
+// A division by 0, and a list of all memory.
+TEST(WorkPlanTest, FramesOfAPlanAreChecked)
+{
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("gnomon_plan." + std::to_string(::getpid()));
+  const auto expect_refused = [&](const std::string &frames, int step, const std::string &reason) {
+    write_plan(path, {.program = "gnomon",
+                      .folder = ".",
+                      .scenes = {{"s.glb", "f", "f_#.exr"}},
+                      .frame_step = step,
+                      .parts = {{.scene = 0, .frames = frames, .output = "f_#.exr"}}});
+    try {
+      static_cast<void>(read_plan(path));
+      ADD_FAILURE() << frames << ' ' << step;
+    }
+    catch (const std::runtime_error &error) {
+      EXPECT_NE(std::string(error.what()).find(path.string() + ": not a plan: " + reason), std::string::npos)
+          << error.what();
+    }
+  };
+  expect_refused("0-9", 0, "--step 0 is not 1 or more");
+  expect_refused("0-9", -1, "--step -1 is not 1 or more");
+  expect_refused("0-2147483647", 1, "--frames '0-2147483647' are more than 16777216 frames");
+  expect_refused("9-0", 1, "--frames '9-0' is neither");
+  std::filesystem::remove(path);
+}
+
 TEST(WorkPlanTest, APlanIsReadAsItWasWrittenAndRefusedWhenEdited)
 {
   const std::filesystem::path path =

@@ -417,6 +417,55 @@ TEST(GltfInstances, HaveTheMatricesOfEquivalentNodes)
   EXPECT_LT(glm::distance(glm::vec3(world(1)[2]), glm::vec3(0, 0, 4)), 1e-6F);
 }
 
+TEST(GltfInstances, AreMovedByMorphTargets)
+{
+  GltfBuilder builder = triangle_scene();
+  const int scale = builder.accessor(std::vector<float>{1, 1, 1, -2, 1, 1}, Float32, "VEC3");
+  json &primitive = builder.document["meshes"][0]["primitives"][0];
+  const int positions = primitive["attributes"]["POSITION"];
+  // From nothing at rest to the triangle.
+  primitive["targets"] = {{{"POSITION", positions}}};
+  const int zeros = builder.accessor(std::vector<float>(9, 0.0F), Float32, "VEC3");
+  primitive["attributes"]["POSITION"] = zeros;
+  builder.document["meshes"][0]["weights"] = {1.0};
+  builder.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = scale;
+  const int times = builder.accessor(std::vector<float>{0, 1}, Float32, "SCALAR");
+  const int weights = builder.accessor(std::vector<float>{1, 3}, Float32, "SCALAR");
+  builder.document["animations"] = {{{"samplers", {{{"input", times}, {"output", weights}}}},
+                                     {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  Scene scene = import(builder);
+  ASSERT_EQ(scene.objects().size(), 2U);
+  const Scene still = import(triangle_scene());
+  const scene::Mesh &triangle = still.meshes()[still.objects()[0].mesh];
+  for (const float size : {1.0F, 3.0F}) {
+    for (const auto &object : scene.objects()) {
+      const scene::Mesh &mesh = scene.meshes()[object.mesh];
+      ASSERT_EQ(mesh.positions.size(), triangle.positions.size());
+      for (std::size_t i = 0; i < mesh.positions.size(); i++) {
+        EXPECT_EQ(mesh.positions[i], size * triangle.positions[i]) << size;
+      }
+    }
+    scene::pose(scene, scene.animations.at(0), 1.0);
+  }
+}
+
+TEST(GltfInstances, AreSeenWhenTheirNodeIs)
+{
+  GltfBuilder builder = triangle_scene();
+  const int scale = builder.accessor(std::vector<float>{1, 1, 1}, Float32, "VEC3");
+  builder.document["nodes"][0]["extensions"] = {{"EXT_mesh_gpu_instancing", {{"attributes", {{"SCALE", scale}}}}},
+                                                {"KHR_node_visibility", {{"visible", false}}}};
+  Scene scene = import(builder);
+  EXPECT_TRUE(scene.objects().empty());
+  const auto named = [](const auto &item) { return item.value.name == "thing"; };
+  const auto &nodes = scene.nodes();
+  const auto thing = std::ranges::find_if(nodes, named);
+  ASSERT_NE(thing, nodes.end());
+  // As an animation does.
+  scene.edit((*thing).handle, [](scene::Node &node) { node.is_visible = true; });
+  EXPECT_EQ(scene.objects().size(), 1U);
+}
+
 TEST(GltfInstances, AttributesThatDisagreeAreNamed)
 {
   GltfBuilder builder = triangle_scene();

@@ -316,8 +316,7 @@ TEST(GltfImage, InvalidSizesAreRefusedBeforeAllocation)
 {
   EXPECT_HAS(reason({{"uri", data_uri(claimed_png(8000))}}), "is cut off: 8000x8000 texels cannot be in ");
   EXPECT_HAS(reason({{"uri", data_uri(claimed_png(16000))}}), "is cut off: 16000x16000 texels cannot be in ");
-  EXPECT_HAS(reason({{"uri", data_uri(claimed_png(40000))}}),
-             "is too large, 40000x40000 texels: an edge may have 16384");
+  EXPECT_HAS(reason({{"uri", data_uri(claimed_png(40000))}}), "is cut off: 40000x40000 texels cannot be in ");
 }
 
 // ---- WebP ----

@@ -209,6 +209,17 @@ TEST(GltfOpened, TransformsWithoutAnInverseDoNotCloseSkinnedMeshes)
     builder.node({{"scale", {0, 0, 0}}, {"children", {0}}, {"extras", {{"gnomon_visible", false}}}});
     builder.document["scenes"][0]["nodes"] = {1, 2};
     EXPECT_TRUE(import(builder).objects().empty());
+    // It stays below one that has an inverse, whose visibility may be animated.
+    builder.document["nodes"].back()["scale"] = {2, 2, 2};
+    Scene hidden = import(builder);
+    EXPECT_TRUE(hidden.objects().empty());
+    for (const auto &[handle, one] : hidden.nodes()) {
+      if (!one.is_visible) {
+        hidden.edit(handle, [](scene::Node &edited) { edited.is_visible = true; });
+        break;
+      }
+    }
+    EXPECT_EQ(hidden.bounds(), plain.bounds()) << node;
   }
 }
 

@@ -5,8 +5,39 @@
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfMultiPartInputFile.h>
+
+#include <optional>
 
 namespace gnomon::cli {
+
+/** Values of a part of an EXR file: pixels times channels. 8K with 32 channels have fewer. */
+inline constexpr std::uint64_t exr_value_count_max = std::uint64_t(1) << 30U;
+
+/** An EXR file of a stranger. Its headers were compared with the file's length before OpenEXR read them. */
+class ExrInput {
+ public:
+  /** \throws std::exception, without the file's name, if it is no EXR file, or if an attribute exceeds it */
+  explicit ExrInput(const std::filesystem::path &path);
+
+  [[nodiscard]] Imf::MultiPartInputFile &file()
+  {
+    return *file_;
+  }
+  /**
+   * Call this before an Imf::InputPart or another file is made of \a part, because these allocate rows.
+   * \throws std::runtime_error, without the file's name, if it has more values than exr_value_count_max, or more than
+   * its compression can store in a file of its length
+   */
+  void check_memory(int part) const;
+
+ private:
+  std::uint64_t file_bytes_;
+  std::optional<Imf::MultiPartInputFile> file_;
+};
+
+/** \throws std::runtime_error for too few and too many pixels. \see check_edges */
+[[nodiscard]] glm::ivec2 size_of_window(const Imath::Box2i &window);
 
 /**
  * Writes the rows of \a header's data window, with \a metadata, atomically. \throws std::runtime_error naming \a path

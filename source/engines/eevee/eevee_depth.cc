@@ -143,30 +143,29 @@ FrameStep DepthPasses::gbuffer_step()
 
 FrameStep DepthPasses::prepass_step()
 {
-  return {
-      .name = "depth_prepass",
-      .summary = "Depths of objects outside of the G-buffer, if there is none or cascades are fitted.",
-      .part = FrameStep::Part::First,
-      .need = [this](const FrameState &state) { return need_prepass(state); },
-      .reads = {"view_block"},
-      .writes = {"depth"},
-      .passes = {passes()[0], passes()[1]},
-      .record =
-          [this](FrameSample &sample, gpu::CommandList &list) {
-            record_pass(sample, list, buffers_.depth_fb,
-                        {.depth_load = has_gbuffer() ? gpu::LoadAction::Load : depth_load(sample),
-                         .scissor = depth_region(sample)});
-            if (sample.awaits_depths) {
-              feedback_.request(sample.view);
-            }
-          },
-      .submitted =
-          [this](FrameSample &sample) {
-            if (sample.awaits_depths) {
-              feedback_.read_back(sample.viewport.device(), sample.viewport.depth_texture());
-            }
-          },
-      .is_read_back = true};
+  return {.name = "depth_prepass",
+          .summary = "Depths of objects outside of the G-buffer, if there is none or cascades are fitted.",
+          .part = FrameStep::Part::First,
+          .need = [this](const FrameState &state) { return need_prepass(state); },
+          .reads = {"view_block"},
+          .writes = {"depth"},
+          .passes = {passes()[0], passes()[1]},
+          .record =
+              [this](FrameSample &sample, gpu::CommandList &list) {
+                record_pass(sample, list, buffers_.depth_fb,
+                            {.depth_load = has_gbuffer() ? gpu::LoadAction::Load : depth_load(sample),
+                             .scissor = depth_region(sample)});
+                if (sample.awaits_depths) {
+                  feedback_.request(sample.view);
+                }
+              },
+          .submitted =
+              [this](FrameSample &sample) {
+                if (sample.awaits_depths) {
+                  feedback_.read_back(sample.viewport.device(), sample.viewport.depth_texture());
+                }
+              },
+          .is_read_back = true};
 }
 
 FrameStep DepthPasses::lighting_step()

@@ -218,6 +218,14 @@ class AnimationImporter {
     }
     else if (path == "weights") {
       animated.weights_track = track(sampler, weight_count(), Model::ElementType::Scalar);
+      if (const auto instances = things_.instances.find(node); instances != things_.instances.end()) {
+        for (const Handle<scene::Node> instance : instances->second) {
+          AnimatedNode &moved = animation.nodes.emplace_back();
+          moved.node = instance;
+          moved.weights_track = animated.weights_track;
+        }
+        return;
+      }
     }
     else {
       throw Fault("target", "its path '" + printable(path) + "' is not played");

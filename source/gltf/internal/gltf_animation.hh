@@ -21,6 +21,8 @@ namespace gnomon::gltf {
 struct ImportedThings {
   /** Invalid for nodes that are not in the scene. */
   std::vector<scene::Handle<scene::Node>> nodes;
+  /** The instances of nodes that have some, which have their meshes. */
+  std::map<int, std::vector<scene::Handle<scene::Node>>> instances;
   std::map<int, std::vector<scene::Handle<scene::Lamp>>> lamps;
   std::map<int, std::vector<scene::Handle<scene::Camera>>> cameras;
   std::map<int, scene::Handle<scene::Material>> materials;

@@ -149,11 +149,10 @@ void read_joints(const File &file, const Model::Primitive &primitive, int skin, 
 
 }  // namespace
 
-bool is_deformed(const Model &model, const Model::Node &node)
+bool has_targets(const Model &model, const Model::Node &node)
 {
-  const std::vector<Model::Primitive> &primitives = model.meshes[std::size_t(node.mesh)].primitives;
-  return node.skin >= 0 ||
-         std::ranges::any_of(primitives, [](const Model::Primitive &one) { return !one.targets.empty(); });
+  return std::ranges::any_of(model.meshes[std::size_t(node.mesh)].primitives,
+                             [](const Model::Primitive &one) { return !one.targets.empty(); });
 }
 
 std::uint64_t deformed_width(const Model::Primitive &primitive, bool has_skin)

@@ -12,11 +12,8 @@
 /** Import of morph targets and skins. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/**
- * Whether the node has a skin or its mesh has morph targets. The importer makes a separate mesh for each such node.
- * \pre the node has a mesh
- */
-[[nodiscard]] bool is_deformed(const Model &model, const Model::Node &node);
+/** Whether the node's mesh has morph targets. \pre the node has a mesh */
+[[nodiscard]] bool has_targets(const Model &model, const Model::Node &node);
 
 /** Maximum number of joints of a skin. glTF has no limit, but JOINTS_n has at most 16 bits. */
 inline constexpr std::size_t joint_count_max = 65536;

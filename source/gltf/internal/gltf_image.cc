@@ -13,11 +13,6 @@ namespace {
 constexpr std::uint32_t edge_max = 16384;
 /** Limit of the texels of one image, which are decoded at once: 1 GiB. */
 constexpr std::uint64_t image_texel_count_max = std::uint64_t(edge_max) * edge_max;
-/**
- * Largest ratio of decoded to encoded bytes. Deflate: 1032. JPEG: smaller, as 64 samples take at least two bits in each
- * channel. WebP has none: a code of one symbol takes no bits.
- */
-constexpr std::uint64_t expansion_max = 1032;
 
 }  // namespace
 
@@ -53,9 +48,6 @@ ImageDecoder::ImageDecoder(std::span<const unsigned char> bytes, std::string wha
   }
   if (texel_count() > image_texel_count_max) {
     throw Fault(what_, "is too large, " + size + " texels: an image may have " + std::to_string(image_texel_count_max));
-  }
-  if (image::format_of(bytes) != image::Format::Webp && texel_count() / 8 / expansion_max > bytes.size()) {
-    throw Fault(what_, "is cut off: " + size + " texels cannot be in " + std::to_string(bytes.size()) + " bytes");
   }
   kept_texel_count_ = std::uint64_t(kept.x) * kept.y;
 }
