@@ -1,4 +1,5 @@
-# Runs PROGRAM, and fails where it contains or loads glslang or SPIRV-Tools. Wants NM and READELF, the tools' paths.
+# Runs PROGRAM, and fails where it contains or loads glslang or SPIRV-Tools, links the library of Vulkan, which is loaded at run time, or,
+# unless HAS_VULKAN, contains a part of that backend. Wants NM and READELF, the tools' paths.
 cmake_minimum_required(VERSION 3.25)
 
 execute_process(COMMAND ${PROGRAM} OUTPUT_VARIABLE OUTPUT RESULT_VARIABLE STATUS)
@@ -11,10 +12,14 @@ string(FIND "${SYMBOLS}" "gnomon::eevee::" OFFSET)
 if(OFFSET EQUAL -1)
   message(FATAL_ERROR "${NM} shows no symbol of the engine in ${PROGRAM}")
 endif()
-foreach(PART "glslang::" "spvtools::" "gnomon::shader_check::" "libglslang" "libSPIRV")
+set(PARTS "glslang::" "spvtools::" "gnomon::shader_check::" "libglslang" "libSPIRV" "libvulkan")
+if(NOT HAS_VULKAN)
+  list(APPEND PARTS "gnomon::gpu::VulkanContext::" "gnomon::gpu::VulkanDevice::")
+endif()
+foreach(PART ${PARTS})
   string(FIND "${SYMBOLS}${LIBRARIES}" "${PART}" OFFSET)
   if(NOT OFFSET EQUAL -1)
     string(SUBSTRING "${SYMBOLS}${LIBRARIES}" ${OFFSET} 100 FIRST)
-    message(FATAL_ERROR "${PROGRAM} links a shader compiler; the first symbol of '${PART}' is: ${FIRST}")
+    message(FATAL_ERROR "${PROGRAM} must not link '${PART}', of which it has: ${FIRST}")
   endif()
 endforeach()
