@@ -150,7 +150,66 @@ glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max)
   return longer <= size_max ? size : glm::uvec2(edge(size.x), edge(size.y));
 }
 
-Image reduced(Image image, std::uint32_t size_max, ImageUse use)
+/**
+ * Decides which texels of a reduced mask are covered, as its texels are covered or not and \a parts are not. Those of
+ * a half or more are; where that would change the covered part of the image, as grass and nets do, what a texel has
+ * too much or too little goes to its neighbours (Floyd and Steinberg, 1976). Sets the alphas of \a image.
+ */
+static void cover(Image &image, std::vector<float> parts, float cutoff)
+{
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const float part : parts) {
+    sum += double(part);
+    count += part >= 0.5F ? 1 : 0;
+  }
+  constexpr double change_max = 0.01;
+  const bool is_diffused = std::abs(double(count) - sum) > change_max * double(parts.size());
+  const auto least = std::uint8_t(std::clamp(std::ceil(255.0F * cutoff), 1.0F, 255.0F));
+  // As far above the cutoff as below it, so that a filter between two texels changes sides in their middle.
+  const float distance = std::min(cutoff, 1.0F - cutoff);
+  const std::uint8_t high = std::max(rounded(cutoff + distance), least);
+  const std::uint8_t low = std::min(rounded(cutoff - distance), std::uint8_t(least - 1));
+  const std::size_t width = image.width;
+  for (std::size_t i = 0; i < parts.size(); i++) {
+    // What had no alpha keeps none, because its color is not seen.
+    const bool is_covered = parts[i] >= 0.5F && image.texels[4 * i + 3] > 0;
+    std::uint8_t &alpha = image.texels[4 * i + 3];
+    if (is_covered) {
+      alpha = is_diffused ? high : std::max(alpha, least);
+    }
+    else {
+      alpha = std::min(alpha, is_diffused ? low : std::uint8_t(least - 1));
+    }
+    if (!is_diffused) {
+      continue;
+    }
+    const float error = parts[i] - (is_covered ? 1.0F : 0.0F);
+    const std::size_t x = i % width;
+    // Shares of sixteen go to the right, and to the three texels below. At an edge, they go to those that there are.
+    struct Share {
+      bool is_there;
+      std::size_t at;
+      float share;
+    };
+    const bool has_row = i + width < parts.size();
+    const std::array<Share, 4> shares = {Share{x + 1 < width, i + 1, 7.0F},
+                                         {has_row && x > 0, i + width - 1, 3.0F},
+                                         {has_row, i + width, 5.0F},
+                                         {has_row && x + 1 < width, i + width + 1, 1.0F}};
+    float whole = 0.0F;
+    for (const Share &one : shares) {
+      whole += one.is_there ? one.share : 0.0F;
+    }
+    for (const Share &one : shares) {
+      if (one.is_there) {
+        parts[one.at] += error * one.share / whole;
+      }
+    }
+  }
+}
+
+Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cutoff)
 {
   const glm::uvec2 size = reduced_size({image.width, image.height}, size_max);
   if (size == glm::uvec2(image.width, image.height)) {
@@ -161,28 +220,33 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use)
   const std::vector<Span> rows = spans_of(image.height, size.y);
   Image result{std::move(image.name), std::uint32_t(columns.size()), std::uint32_t(rows.size()), {}};
   result.texels.reserve(4 * columns.size() * rows.size());
+  const bool is_mask = use == ImageUse::Mask && mask_cutoff > 0.0F;
+  const bool has_alpha = use == ImageUse::Coverage || use == ImageUse::Mask;
+  /** The mean of colours, of alphas and of the covered part. */
   const auto sum_of = [&](const Span &row, const Span &column, bool is_weighted) {
-    std::array<float, 4> sum{};
+    std::array<float, 5> sum{};
     for (std::size_t b = 0; b < row.shares.size(); b++) {
       for (std::size_t a = 0; a < column.shares.size(); a++) {
         const float share = row.shares[b] * column.shares[a];
         const std::size_t texel = 4 * ((std::size_t(row.first) + b) * image.width + column.first + a);
         const float alpha = float(image.texels[texel + 3]) / 255.0F;
-        const float weight = is_weighted ? share * alpha : share;
+        const float part = !is_mask ? alpha : alpha >= mask_cutoff ? 1.0F : 0.0F;
+        const float weight = is_weighted ? share * part : share;
         for (std::size_t c = 0; c < 3; c++) {
           sum[c] += weight * decoded[image.texels[texel + c]];
         }
         sum[3] += share * alpha;
+        sum[4] += share * part;
       }
     }
     return sum;
   };
-  const bool has_alpha = use == ImageUse::Coverage || use == ImageUse::Mask;
+  std::vector<float> parts;
   for (const Span &row : rows) {
     for (const Span &column : columns) {
-      std::array<float, 4> mean = sum_of(row, column, has_alpha);
-      if (has_alpha && mean[3] > 0.0F) {
-        std::for_each_n(mean.begin(), 3, [&](float &value) { value /= mean[3]; });
+      std::array<float, 5> mean = sum_of(row, column, has_alpha);
+      if (has_alpha && mean[4] > 0.0F) {
+        std::for_each_n(mean.begin(), 3, [&](float &value) { value /= mean[4]; });
       }
       else if (has_alpha) {
         mean = sum_of(row, column, false);
@@ -190,7 +254,13 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use)
       for (std::size_t c = 0; c < 4; c++) {
         result.texels.push_back(rounded(use != ImageUse::Data && c < 3 ? encoded_srgb(mean[c]) : mean[c]));
       }
+      if (is_mask) {
+        parts.push_back(mean[4]);
+      }
     }
+  }
+  if (is_mask) {
+    cover(result, std::move(parts), mask_cutoff);
   }
   return result;
 }

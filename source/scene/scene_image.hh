@@ -36,10 +36,11 @@ enum class ImageUse {
 
 /**
  * \a image with at most \a size_max texels along both edges, and about the same ratio of its edges. Each texel is the
- * mean of the area that it covers, of values or of decoded colours as \a use says. An image that is small enough is
- * returned as it is. \pre \a size_max > 0
+ * mean of the area that it covers, of values or of decoded colours as \a use says. With ImageUse::Mask and a
+ * \a mask_cutoff above 0, about as large a part of the result has an alpha of at least \a mask_cutoff as of the image.
+ * An image that is small enough is returned as it is. \pre \a size_max > 0
  */
-[[nodiscard]] Image reduced(Image image, std::uint32_t size_max, ImageUse use);
+[[nodiscard]] Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cutoff = 0.0F);
 
 /**
  * The texels of all mip levels, the finest first, for ImageUse::Coverage, or for ImageUse::Mask if \a mask_cutoff is

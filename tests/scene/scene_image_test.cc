@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 namespace gnomon::scene {
 namespace {
 
@@ -105,6 +108,64 @@ TEST(CoverageLevels, AreMeansOfLightAlsoForOddEdges)
   image.texels[3] = image.texels[7] = 0;
   EXPECT_EQ(reduced(image, 1, ImageUse::Coverage).texels, (std::vector<std::uint8_t>{255, 255, 255, 85}));
   EXPECT_EQ(reduced(image, 1, ImageUse::Color).texels[0], 156);
+}
+
+/** A mask of \a width squared: `covers` says which texels are leaf, and the others are red without alpha. */
+template <typename Covers>
+Image leaf_mask(std::uint32_t width, const Covers &covers)
+{
+  Image image{"leaf", width, width, {}};
+  for (std::uint32_t i = 0; i < width * width; i++) {
+    const std::array<std::uint8_t, 4> texel = covers(i % width, i / width)
+                                                  ? std::array<std::uint8_t, 4>{50, 160, 40, 255}
+                                                  : std::array<std::uint8_t, 4>{255, 0, 0, 0};
+    image.texels.insert(image.texels.end(), texel.begin(), texel.end());
+  }
+  return image;
+}
+
+double covered_part(const Image &image, float cutoff)
+{
+  std::size_t count = 0;
+  for (std::size_t i = 3; i < image.texels.size(); i += 4) {
+    count += float(image.texels[i]) / 255.0F >= cutoff ? 1 : 0;
+  }
+  return 4.0 * double(count) / double(image.texels.size());
+}
+
+TEST(ReducedMask, CoversAsMuchAsTheImage)
+{
+  for (const float cutoff : {0.1F, 0.5F, 0.9F}) {
+    for (const std::uint32_t size : {16U, 24U, 64U}) {
+      for (std::uint32_t covered = 0; covered <= 8; covered++) {
+        const Image image = leaf_mask(128, [&](std::uint32_t x, std::uint32_t) { return x % 8 < covered; });
+        const Image small = reduced(image, size, ImageUse::Mask, cutoff);
+        EXPECT_NEAR(covered_part(small, cutoff), covered / 8.0, 1.0 / size) << cutoff << ' ' << size << ' ' << covered;
+        for (std::size_t i = 0; i < small.texels.size(); i += 4) {
+          if (float(small.texels[i + 3]) / 255.0F >= cutoff && covered > 0) {
+            EXPECT_EQ(small.texels[i], 50) << "red is not seen";
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ReducedMask, OfALargeShapeHasItsEdge)
+{
+  const auto is_inside = [](double x, double y) { return (x - 61) * (x - 61) + (y - 67) * (y - 67) < 50.0 * 50.0; };
+  const Image small =
+      reduced(leaf_mask(128, [&](std::uint32_t x, std::uint32_t y) { return is_inside(x + 0.5, y + 0.5); }), 32,
+              ImageUse::Mask, 0.5F);
+  for (std::uint32_t i = 0; i < 32 * 32; i++) {
+    const double x = 4.0 * (i % 32) + 2.0;
+    const double y = 4.0 * (i / 32) + 2.0;
+    const double distance = std::hypot(x - 61, y - 67) - 50.0;
+    // Half of a texel of 4 along a diagonal.
+    if (std::abs(distance) > 2.9) {
+      EXPECT_EQ(small.texels[4 * i + 3] >= 128, distance < 0.0) << x << ' ' << y;
+    }
+  }
 }
 
 }  // namespace

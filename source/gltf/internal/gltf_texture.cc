@@ -205,25 +205,39 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
   return handle;
 }
 
-/** The images that materials of \a scene use for colours. Coverage counts before Color. */
-static std::map<Handle<Image>, scene::ImageUse> color_images(const Scene &scene)
+namespace {
+
+struct ColorUse {
+  scene::ImageUse use = scene::ImageUse::Color;
+  /** Least alpha of a covered texel, for the first mask. */
+  float mask_cutoff = 0.0F;
+};
+
+/** The images that materials of \a scene use for colours. Coverage counts before Color, and Mask before both. */
+std::map<Handle<Image>, ColorUse> color_images(const Scene &scene)
 {
-  std::map<Handle<Image>, scene::ImageUse> images;
+  std::map<Handle<Image>, ColorUse> images;
   for (const auto &[handle, material] : scene.materials()) {
     for (const scene::TextureInput &input : scene::texture_inputs) {
       const Texture *texture = scene.textures().find((material.*input.slot).texture);
       if (texture != nullptr && input.is_color) {
-        scene::ImageUse &use = images.try_emplace(texture->image, scene::ImageUse::Color).first->second;
-        use = std::max(use, scene::use_of(material, input));
+        ColorUse &known = images[texture->image];
+        const scene::ImageUse use = scene::use_of(material, input);
+        if (use == scene::ImageUse::Mask && known.mask_cutoff == 0.0F && material.alpha > 0.0F) {
+          known.mask_cutoff = material.alpha_cutoff / material.alpha;
+        }
+        known.use = std::max(known.use, use);
       }
     }
   }
   return images;
 }
 
+}  // namespace
+
 std::map<Handle<Image>, Fault> TextureImporter::decode(Progress &progress)
 {
-  const std::map<Handle<Image>, scene::ImageUse> colors = color_images(scene_);
+  const std::map<Handle<Image>, ColorUse> colors = color_images(scene_);
   std::vector<std::variant<Image, Fault>> results(pending_.size());
   const std::thread::id importing_thread = std::this_thread::get_id();
   std::atomic<std::size_t> done = 0;
@@ -236,8 +250,8 @@ std::map<Handle<Image>, Fault> TextureImporter::decode(Progress &progress)
     try {
       Image image = pending_[i].decoder.read();
       const auto color = colors.find(pending_[i].handle);
-      const scene::ImageUse use = color == colors.end() ? scene::ImageUse::Data : color->second;
-      results[i] = size_max_ > 0 ? reduced(std::move(image), size_max_, use) : std::move(image);
+      const ColorUse use = color == colors.end() ? ColorUse{scene::ImageUse::Data} : color->second;
+      results[i] = size_max_ > 0 ? reduced(std::move(image), size_max_, use.use, use.mask_cutoff) : std::move(image);
     }
     catch (const Fault &fault) {
       results[i] = fault;
