@@ -151,6 +151,7 @@ class Collector:
             if added.mesh is not None or added.lamp is not None:
                 content.nodes[(name,) if parent is None else (name, parent.name, key.tobytes())] = added.node(matrix)
         self.images = {key: value for key, value in self.images.items() if key in content.textures}
+        self.meshes = dict(content.meshes)
         return content
 
     def thing_of(self, thing, content):
