@@ -14,7 +14,7 @@ import bpy
 import numpy
 
 FOLDER = sys.argv[-1]
-SECONDS_MAX = 300
+SECONDS_MAX = 600
 bpy.context.preferences.view.show_splash = False
 bpy.ops.preferences.addon_enable(module='render_gnomon')
 collect, mirror, settings, viewport = (importlib.import_module(f'render_gnomon.{name}') for name in ('collect', 'mirror', 'settings', 'viewport'))
@@ -107,7 +107,7 @@ def image_size(path):
 def steps():
     scene = bpy.context.scene
     scene.render.engine = 'GNOMON'
-    scene.gnomon.sample_count = 2
+    scene.gnomon.sample_count = 1
     scene.gnomon.map_size_px = scene.gnomon.cube_size_px = 256
     scene.view_settings.view_transform = 'Standard'
     cube, lamp = bpy.data.objects['Cube'], bpy.data.objects['Light']
@@ -148,8 +148,10 @@ def steps():
             scene.collection.objects.link(empty)
 
     def edited():
-        cube.data.vertices[0].co.z += 1
-        cube.data.update()
+        # One with modifiers, and one without.
+        for thing in (cube, bpy.data.objects['Plane']):
+            thing.data.vertices[0].co.z += 1
+            thing.data.update()
 
     def hidden():
         bpy.data.objects['Plane'].hide_set(True)
@@ -161,7 +163,7 @@ def steps():
         lamp.data.type = 'SUN'
 
     def set_samples():
-        scene.gnomon.sample_count = 3
+        scene.gnomon.sample_count = 2
 
     def orthographic():
         space().region_3d.view_perspective = 'ORTHO'

@@ -90,6 +90,8 @@ class Collector:
         self.materials = {}
         self.remarks = []
         self.last = None
+        # Of the depsgraph's instances.
+        self.count = 0
         # Names of the objects that others repeat, or that repeat others.
         self.repeated = set()
 
@@ -107,10 +109,12 @@ class Collector:
 
     def moved(self, depsgraph):
         """The last content with objects at other places; None if anything else changed."""
-        if self.last is None or not depsgraph.updates:
+        # The scene itself is always named. Objects that come and go may be told by their number only.
+        moved = [update for update in depsgraph.updates if update.id.bl_rna.identifier != 'Scene']
+        if self.last is None or not moved or len(depsgraph.object_instances) != self.count:
             return None
         nodes = dict(self.last.nodes)
-        for update in depsgraph.updates:
+        for update in moved:
             thing = update.id
             if not hasattr(thing, 'matrix_world') or update.is_updated_geometry or update.is_updated_shading or thing.name in self.repeated:
                 return None
@@ -128,7 +132,7 @@ class Collector:
         self.repeated = set()
         content = Content()
         instances = depsgraph.object_instances
-        count = len(instances)
+        count = self.count = len(instances)
         matrices, shown, keys = numpy.empty(16 * count, numpy.float32), numpy.empty(count, bool), numpy.empty(8 * count, numpy.int32)
         instances.foreach_get('matrix_world', matrices)
         instances.foreach_get('show_self', shown)
@@ -151,6 +155,7 @@ class Collector:
             if added.mesh is not None or added.lamp is not None:
                 content.nodes[(name,) if parent is None else (name, parent.name, key.tobytes())] = added.node(matrix)
         self.images = {key: value for key, value in self.images.items() if key in content.textures}
+        self.meshes = dict(content.meshes)
         return content
 
     def thing_of(self, thing, content):
