@@ -380,6 +380,9 @@ std::optional<DeclaredConstant> declared_constant(std::string_view line)
 
 std::vector<StageConstant> stage_constants(const ShaderDesc &desc, const std::vector<ShaderSource> &stages)
 {
+  if (desc.constants.empty()) {
+    return {};
+  }
   std::vector<StageConstant> values;
   std::vector<std::string_view> declared;
   for (const ShaderSource &stage : stages) {
