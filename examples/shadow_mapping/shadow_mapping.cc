@@ -196,7 +196,7 @@ static void keep_one_spot(scene::Scene &scene)
   }
 }
 
-/** What is drawn, and where to. */
+/** Draws one scene: its shadow map, and pictures that look it up. */
 class ShadowMapping {
  public:
   ShadowMapping(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px)

@@ -45,7 +45,7 @@ void add_source_options(CLI::App &command, std::vector<std::string> &include_fol
 
 /** Names for --target: auto, vulkan and those of all targets. */
 [[nodiscard]] std::vector<std::string> target_names();
-/** Of a name other than auto; vulkan is Vulkan 1.2. */
+/** The target of one of target_names() other than auto. The name vulkan stands for Vulkan 1.2. */
 [[nodiscard]] shader_check::CheckTarget target_of(const std::string &name);
 
 }  // namespace gnomon::cli

@@ -90,7 +90,7 @@ class Collector:
         self.materials = {}
         self.remarks = []
         self.last = None
-        # Of the depsgraph's instances.
+        # The number of instances of the last depsgraph.
         self.count = 0
         # Names of the objects that others repeat, or that repeat others.
         self.repeated = set()

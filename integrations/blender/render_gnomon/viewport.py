@@ -5,6 +5,7 @@ Blender's main thread reads the depsgraph. A thread of each viewport has a devic
 a device makes its context current on its thread, and Blender has its own on the main thread.
 """
 
+import dataclasses
 import math
 import os
 import subprocess
@@ -20,9 +21,9 @@ from mathutils import Matrix
 from . import collect, mirror, settings, world
 
 BAKE = os.path.join(os.path.dirname(__file__), 'bake_world.py')
-# Of a world's picture, texels.
+# Width of the picture of a world, texels.
 WORLD_WIDTH = 512
-# Of each picture that is shown while it is refined.
+# Time between two pictures of a refinement.
 SECONDS = 0.1
 # Between two looks for new pictures.
 POLL_SECONDS = 0.02
@@ -175,8 +176,9 @@ class Viewport:
         self.settings = None
         self.texture = None
         self.shown = None
-        # Of the world: what it was made from, set_world's arguments, and the number of the bake that is running.
+        # Arguments of gnomon's Scene.set_world.
         self.world = None
+        # The number of the last bake. Results of earlier ones are dropped.
         self.bake_count = 0
         self.remarks = []
         Viewport.all.append(self)
@@ -191,12 +193,15 @@ class Viewport:
     def update(self, context, depsgraph):
         scene = depsgraph.scene
         is_first = self.content is None
-        self.content = self.collector.content(depsgraph, context.space_data)
+        content = self.collector.content(depsgraph, context.space_data)
         if is_first or any(update.id.bl_rna.identifier in ('World', 'ShaderNodeTree', 'Scene') or
                            update.id == scene.world for update in depsgraph.updates):
             self.update_world(scene.world)
-        self.content.world = self.world
-        self.painter.want(content=self.content)
+        # A bake may end on its thread at any time.
+        with self.painter.condition:
+            self.content = content
+            self.content.world = self.world
+            self.painter.want(content=self.content)
 
     def update_world(self, blender_world):
         self.bake_count += 1
@@ -207,14 +212,17 @@ class Viewport:
         number = self.bake_count
 
         def done(picture, error):
-            if number != self.bake_count:
-                return
-            if error is not None:
-                self.painter.publish(error=f"the world: {error}")
-                return
-            self.set_world({'picture': picture})
-            self.content = mirror.Content(**{**vars(self.content), 'world': self.world})
-            self.painter.want(content=self.content)
+            with self.painter.condition:
+                if number != self.bake_count:
+                    return
+                if error is not None:
+                    self.painter.publish(error=f"the world: {error}")
+                    return
+                self.set_world({'picture': picture})
+                # The first update takes the world itself, once it has its content.
+                if self.content is not None:
+                    self.content = dataclasses.replace(self.content, world=self.world)
+                    self.painter.want(content=self.content)
 
         baked(blender_world.original, done)
 

@@ -101,8 +101,8 @@ FrameNode shadow_step_node(const ReportSource &source, const Need &need)
 }
 
 /**
- * What \a step reads of the steps in \a drawn_before, each with the last of them that wrote it. \a live: names of all
- * resources.
+ * A node that lists the resources that \a step reads, each with the last step in \a drawn_before that wrote it.
+ * \a live: names of all resources.
  */
 FrameNode read_node(const FrameStep &step, std::span<const FrameStep *const> drawn_before,
                     const std::set<std::string_view> &live)
