@@ -209,8 +209,8 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
     const std::vector<std::string> own_defines = defines_in(value.at("defines"));
     const std::vector<std::vector<std::string>> permutations = permutations_in(value.at("permutations"));
     for (const std::vector<std::string> &permutation : permutations) {
-      ShaderManifest::Entry &entry =
-          manifest.entries.emplace_back(program, own_targets.is_given() ? targets_in(own_targets) : targets);
+      ShaderManifest::Entry &entry = manifest.entries.emplace_back(
+          ShaderManifest::Entry{program, own_targets.is_given() ? targets_in(own_targets) : targets});
       for (const auto &list : {defines, own_defines, permutation}) {
         entry.program.defines.insert(entry.program.defines.end(), list.begin(), list.end());
       }

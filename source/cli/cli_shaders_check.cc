@@ -153,8 +153,7 @@ ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::Sha
         result.messages = shader_check::check_shader(desc, noted, job);
         for (std::vector<std::string> *paths : {&result.files, &result.absent}) {
           std::ranges::sort(*paths);
-          const auto rest = std::ranges::unique(*paths);
-          paths->erase(rest.begin(), rest.end());
+          paths->erase(std::unique(paths->begin(), paths->end()), paths->end());
         }
         result.target = target;
         return result;

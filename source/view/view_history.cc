@@ -2,7 +2,6 @@
 #include "view_history.hh"
 
 #include <algorithm>
-#include <ranges>
 
 namespace gnomon::view {
 
@@ -56,8 +55,8 @@ void History::remove(scene::Scene &scene, Handle<Node> root)
 void History::remove_members(scene::Scene &scene, const SubtreeChange &change)
 {
   // Remove the last node first, so that restored nodes have the same places in the scene's order.
-  for (const SubtreeChange::Member &member : std::views::reverse(change.members)) {
-    scene.remove(member.node);
+  for (auto member = change.members.rbegin(); member != change.members.rend(); ++member) {
+    scene.remove(member->node);
   }
 }
 

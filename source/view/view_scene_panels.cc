@@ -26,7 +26,7 @@ bool contains(const std::string &text, const char *part)
 {
   const std::string_view wanted(part);
   const auto is_same = [](char a, char b) { return std::tolower(a) == std::tolower(b); };
-  return !std::ranges::search(text, wanted, is_same).empty() || wanted.empty();
+  return std::search(text.begin(), text.end(), wanted.begin(), wanted.end(), is_same) != text.end() || wanted.empty();
 }
 
 /** Show the images of a material; they cannot be edited. */

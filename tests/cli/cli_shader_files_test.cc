@@ -45,7 +45,7 @@ TEST_F(ShaderFilesTest, AFileOfAnotherKindIsAnErrorOfThatFileAlone)
 TEST_F(ShaderFilesTest, StagesBetweenThatLieBesideBelongToTheProgram)
 {
   for (const auto &[before, after] : {std::pair("p.", ""), std::pair("p.", ".glsl"), std::pair("p_", ".glsl")}) {
-    const auto path = [&](const std::string &stage) { return before + stage + after; };
+    const auto path = [start = before, end = after](const std::string &stage) { return start + stage + end; };
     write(path("vert"), "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
     write(path("geom"),
           "#version 450\nlayout(points) in;\nlayout(points, max_vertices = 1) out;\n"
@@ -283,7 +283,7 @@ TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
   EXPECT_NE(check("--manifest m.json").err.find("line 1"), std::string::npos);
   for (const nlohmann::json &target : schema["$defs"]["target"]["enum"]) {
     nlohmann::json known = right;
-    known["targets"] = {target};
+    known["targets"] = nlohmann::json::array({target});
     write("m.json", known.dump());
     EXPECT_EQ(check("--manifest m.json").err, "") << target;
   }

@@ -96,7 +96,7 @@ TEST(GltfFile, BuffersAreChecked)
 {
   const auto error_with = [](const json &buffer) {
     GltfBuilder builder = triangle_scene();
-    builder.document["buffers"] = {buffer};
+    builder.document["buffers"] = json::array({buffer});
     return import_error(builder);
   };
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "missing.bin"}}), "buffer 0 'missing.bin': there is no such file");

@@ -271,7 +271,7 @@ TEST(GltfSpelling, ExtensionsThatAreNotReadAreNamedWhereverTheyStand)
   d["meshes"][0]["primitives"][0]["material"] = 0;
   d["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
   d["textures"] = {{{"source", 0}, {"sampler", 0}}};
-  d["samplers"] = {json::object()};
+  d["samplers"] = json::array({json::object()});
   d["images"] = {{{"uri", "a.png"}}};
   d["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
   d["skins"] = {{{"joints", {0}}}};

@@ -236,11 +236,14 @@ TEST(SceneHandle, AlgorithmsOfTheStandardLibraryTakePools)
   EXPECT_EQ((*std::find_if(nodes.begin(), nodes.end(), is_d)).handle, handles[3]);
   EXPECT_EQ(std::ranges::find(nodes, handles[2], &Pool<Node>::Item::handle)->value.name, "c");
   EXPECT_EQ(std::count_if(nodes.begin(), nodes.end(), is_d), 1);
+// clang before version 16 does not compile the views of libstdc++.
+#if !defined(__clang__) || __clang_major__ >= 16
   std::string names;
   for (const Pool<Node>::Item item : nodes | std::views::filter(std::not_fn(is_d)) | std::views::take(5)) {
     names += item.value.name;
   }
   EXPECT_EQ(names, "ac");
+#endif
   Pool<Node>::Iterator at = nodes.begin();
   EXPECT_EQ((at++)->value.name, "a");
   EXPECT_EQ(at->value.name, "c");
@@ -863,7 +866,7 @@ void expect_refused(const T &value, const std::vector<std::pair<std::string, std
     change(changed);
     for (const std::string &message : {message_of<InvalidEdit>([&] { scene.add(changed); }),
                                        message_of<InvalidEdit>([&] { scene.replace(handle, changed); }),
-                                       message_of<InvalidEdit>([&] { scene.edit(handle, change); })}) {
+                                       message_of<InvalidEdit>([&, &edit = change] { scene.edit(handle, edit); })}) {
       EXPECT_NE(message.find(word), std::string::npos) << word << ": " << message;
       EXPECT_EQ(message.find(fmt::format("{} '{}': ", T::kind_name, value.name)), 0U) << message;
     }

@@ -84,8 +84,8 @@ TEST(Octahedral, RoundTripOfDirectionsIsWithinRounding)
     worst = std::max(worst, angle(back, v));
   }
   // Coordinates near 1 are rounded to 6e-8. The error is twice that on the octahedron, and three times more on the
-  // sphere.
-  EXPECT_LE(worst, 4e-7F);
+  // sphere. Normalisation adds 1e-7. The worst of 20 million directions: 4.5e-7.
+  EXPECT_LE(worst, 4.6e-7F);
 }
 
 TEST(Octahedral, RoundTripOfTexelsIsWithinRounding)

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <random>
-#include <ranges>
 #include <set>
 
 namespace gnomon::eevee {
@@ -67,7 +67,9 @@ std::optional<double> entry(const scene::Bounds &box, const glm::dvec3 &origin, 
 int wrong_pairs(const std::vector<scene::Bounds> &boxes, const glm::vec4 &eye, int &pairs)
 {
   const std::vector<std::uint32_t> order = back_to_front(boxes, eye);
-  EXPECT_TRUE(std::ranges::is_permutation(order, std::views::iota(0U, std::uint32_t(boxes.size()))));
+  std::vector<std::uint32_t> all(boxes.size());
+  std::iota(all.begin(), all.end(), 0U);
+  EXPECT_TRUE(std::ranges::is_permutation(order, all));
   int wrong = 0;
   for (int i = 0; i < 60; i++) {
     const scene::Bounds &aimed = boxes[random_bits() % boxes.size()];

@@ -283,7 +283,10 @@ std::vector<scene::PlacedLamp> hall_lamps(int count)
   for (scene::PlacedLamp &lamp : lamps) {
     lamp.kind = scene::LampKind::Point;
     lamp.range = 12.0F;
-    lamp.world_from_lamp[3] = glm::dvec4(random.in(0, edge), 4.0F, random.in(-edge, 0.0F), 1.0F);
+    // Compilers evaluate arguments in different orders.
+    const float z = random.in(-edge, 0.0F);
+    const float x = random.in(0.0F, edge);
+    lamp.world_from_lamp[3] = glm::dvec4(x, 4.0F, z, 1.0F);
   }
   return lamps;
 }

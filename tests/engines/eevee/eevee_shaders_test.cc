@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 #include <vector>
 
@@ -50,12 +49,12 @@ TEST(ShaderVariants, ChooseTheLayerInTheVertexShaderAtVersion450)
   std::string text(*shaders::file(path));
   ASSERT_NE(text.find("gl_Layer = "), std::string::npos);
   ASSERT_EQ(text.find("#version 450 core\n"), 0U);
-  EXPECT_NO_THROW(shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file)));
+  EXPECT_NO_THROW(static_cast<void>(shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file))));
   text.replace(0, 12, "#version 330");
   const gpu::ShaderFiles older = [&](std::string_view file) {
     return file == path ? std::optional<std::string_view>(text) : shaders::file(file);
   };
-  EXPECT_THROW(shader_check::reflect(desc.name, gpu::preprocess(desc, older)), gpu::Error);
+  EXPECT_THROW(static_cast<void>(shader_check::reflect(desc.name, gpu::preprocess(desc, older))), gpu::Error);
 }
 
 TEST(ShaderVariants, AreAllDifferentPrograms)
@@ -112,7 +111,9 @@ TEST(SharedBlocks, AreLaidOutAlikeInCppAndGlsl)
   for (const ShaderDeclaration &declaration : shader_declarations()) {
     std::set<std::string> compared;
     // Variants with many features come last, and read the most blocks.
-    for (const Feature features : shader_variants(declaration) | std::views::reverse) {
+    std::vector<Feature> variants = shader_variants(declaration);
+    std::ranges::reverse(variants);
+    for (const Feature features : variants) {
       const std::vector<gpu::ShaderInterface::Binding> bindings = interface_of(declaration, features).bindings;
       if (std::ranges::all_of(
               bindings, [&](const auto &binding) { return !is_block(binding) || compared.contains(binding.name); })) {
