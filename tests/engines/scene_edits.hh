@@ -331,7 +331,7 @@ inline EditedScene material_scene(bool is_rich, const std::string &name)
   add_edit(edited, mesh, "mesh: no material", [](scene::Mesh &one) { one.material = {}; });
   add_edit(edited, mesh, "mesh: a position", [](scene::Mesh &one) { one.positions[3].z += 0.5F; });
   add_edit(edited, mesh, "mesh: normals",
-           [](scene::Mesh &one) { std::ranges::rotate(one.normals, one.normals.begin() + 4); });
+           [](scene::Mesh &one) { std::rotate(one.normals.begin(), one.normals.begin() + 4, one.normals.end()); });
   add_edit(edited, mesh, "mesh: fewer triangles", [](scene::Mesh &one) { one.indices.resize(18); });
   add_edit(edited, mesh, "mesh: more vertices", [](scene::Mesh &one) {
     scene::for_each_stream(one, [](auto &stream) { stream.push_back(stream.back()); });
@@ -434,7 +434,7 @@ inline EditedScene structure_scene(const std::string &name)
                                    {scene::LampKind::Spot, "a spot"},
                                    {scene::LampKind::Hemi, "a hemi lamp"},
                                    {scene::LampKind::Area, "an area lamp"}}) {
-    add_addition(edited, text, [kind](scene::Scene &to) {
+    add_addition(edited, text, [kind = kind](scene::Scene &to) {
       keep_near_plane(to, add_lamp_of(to, kind, {1, 1.5F, 2.5F}));
       return to.placed_lamps().back().node;
     });

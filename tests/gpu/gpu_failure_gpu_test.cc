@@ -68,7 +68,8 @@ class FailureGpu : public test::GlDeviceTest {
 
   static void GLAPIENTRY delay_copy(GLuint source, GLuint target, GLintptr first, GLintptr offset, GLsizeiptr size)
   {
-    DelayedCopy &copy = delayed_copies.emplace_back(target, offset, std::vector<std::byte>(std::size_t(size)));
+    DelayedCopy &copy =
+        delayed_copies.emplace_back(DelayedCopy{target, offset, std::vector<std::byte>(std::size_t(size))});
     glGetNamedBufferSubData(source, first, size, copy.bytes.data());
   }
 

@@ -11,8 +11,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 #include <random>
-#include <ranges>
 
 namespace gnomon::eevee {
 namespace {
@@ -80,7 +80,7 @@ TEST_F(BlendGpuTest, AStackIsItsClosedFormInEveryOrderOfObjects)
   for (const std::size_t count : {1U, 2U, 8U}) {
     const std::vector<Pane> panes = some_panes(count);
     std::vector<std::size_t> order(count);
-    std::ranges::copy(std::views::iota(std::size_t(0), count), order.begin());
+    std::iota(order.begin(), order.end(), std::size_t(0));
     for (int turn = 0; turn < (count == 1 ? 1 : 4); turn++) {
       scene = {};
       for (const std::size_t i : order) {
