@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "unlit_programs.hh"
-
 #include "draw_engine.hh"
 #include "draw_viewport.hh"
 #include "render_scene.hh"
@@ -12,6 +10,9 @@
 #include <optional>
 
 namespace gnomon::unlit {
+
+enum class ShaderId;
+enum class Feature : std::uint32_t;
 
 struct Settings {
   /**
