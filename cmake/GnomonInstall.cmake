@@ -1,4 +1,4 @@
-# cmake --install: headers, libraries, the program, and what find_package and pkg-config read.
+# cmake --install: headers for hosts, libraries, the program, and what find_package and pkg-config read.
 #
 # Headers are in include/gnomon. Those that GLSL includes too are in include/gnomon/shared, as in the sources.
 include(CMakePackageConfigHelpers)
@@ -11,10 +11,12 @@ foreach(LAYER ${GNOMON_INSTALLED_LAYERS})
   get_target_property(TARGET gnomon::${LAYER} ALIASED_TARGET)
   set(FILE_SETS "")
   get_target_property(HEADER_SETS ${TARGET} INTERFACE_HEADER_SETS)
-  foreach(SET ${HEADER_SETS})
-    string(REPLACE HEADERS "" FOLDER ${SET})
-    list(APPEND FILE_SETS FILE_SET ${SET} DESTINATION ${HEADER_FOLDER}/${FOLDER})
-  endforeach()
+  if(HEADER_SETS)
+    foreach(SET ${HEADER_SETS})
+      string(REPLACE HEADERS "" FOLDER ${SET})
+      list(APPEND FILE_SETS FILE_SET ${SET} DESTINATION ${HEADER_FOLDER}/${FOLDER})
+    endforeach()
+  endif()
   install(TARGETS ${TARGET} EXPORT gnomon ${FILE_SETS})
 endforeach()
 install(EXPORT gnomon NAMESPACE gnomon:: FILE gnomon-targets.cmake DESTINATION ${PACKAGE_FOLDER})
@@ -56,7 +58,7 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
-  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake, glslang-dev, glslang-tools, libdraco-dev, libegl-dev, libembree-dev, libepoxy-dev, libfmt-dev, \
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake, glslang-dev, glslang-tools, libdraco-dev, libegl-dev, libepoxy-dev, libfmt-dev, \
 libglfw3-dev, libglm-dev, libmeshoptimizer-dev, libsimdjson-dev, libspng-dev, libturbojpeg0-dev, libwebp-dev, libxxhash-dev, pkg-config, python3-numpy, spirv-tools")
   include(CPack)
 endif()

@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <set>
 
@@ -18,20 +17,24 @@ namespace gnomon::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 12> plain_names = {"combined", "depth",      "position",      "normal",
-                                                          "albedo",   "roughness",  "emission",      "world",
-                                                          "light",    "visibility", "crypto_object", "crypto_material"};
-/** Followed by a dot and the name of a lamp. */
-constexpr std::array<std::string_view, 2> lamp_names = {"light", "visibility"};
-/** Names of layers that show surfaces. */
-constexpr std::array<std::string_view, 8> surface_names = {
-    "depth", "position", "normal", "albedo", "roughness", "visibility", "crypto_object", "crypto_material"};
+using eevee::LayerSource;
 
-/** The name of a lamp's layer up to the dot; otherwise the whole name. */
-std::string_view layer_kind(std::string_view name)
+/** Whether the layer can be in a file. */
+bool is_in_files(const eevee::PictureLayer &layer)
+{
+  return layer.source != LayerSource::Ids;
+}
+
+/** The layer that a name of the list asks for; nullptr if there is none. */
+const eevee::PictureLayer *find_layer(std::string_view name)
 {
   const std::string_view stem = name.substr(0, name.find('.'));
-  return std::ranges::find(lamp_names, stem) != lamp_names.end() ? stem : name;
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (is_in_files(layer) && layer.name == (layer.has_lamps() ? stem : name)) {
+      return &layer;
+    }
+  }
+  return nullptr;
 }
 
 std::vector<std::size_t> lamps_named(std::span<const scene::PlacedLamp> lamps, const std::string &name)
@@ -45,14 +48,14 @@ std::vector<std::size_t> lamps_named(std::span<const scene::PlacedLamp> lamps, c
   return indices;
 }
 
-/** The first components of \a pixels, from \a first. */
-Layer layer_of(std::string name, std::string channels, std::span<const glm::vec4> pixels, int first = 0)
+/** \a name: of the layer in the file */
+Layer layer_of(const eevee::PictureLayer &picture_layer, std::string name, std::span<const glm::vec4> pixels)
 {
-  Layer layer{std::move(name), std::move(channels), {}};
+  Layer layer{std::move(name), std::string(picture_layer.channels), {}};
   layer.values.reserve(pixels.size() * layer.channels.size());
   for (const glm::vec4 &pixel : pixels) {
     for (std::size_t i = 0; i < layer.channels.size(); i++) {
-      layer.values.push_back(pixel[first + int(i)]);
+      layer.values.push_back(pixel[picture_layer.first + int(i)]);
     }
   }
   return layer;
@@ -78,7 +81,17 @@ std::vector<std::string> object_names(eevee::SceneRenderer &renderer, bool is_ma
 
 std::string aov_names()
 {
-  return fmt::format("{}, light.LAMP, visibility.LAMP", fmt::join(plain_names, ", "));
+  std::vector<std::string> names;
+  std::vector<std::string> lamp_names;
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (is_in_files(layer)) {
+      names.emplace_back(layer.name);
+    }
+    if (layer.has_lamps()) {
+      lamp_names.push_back(fmt::format("{}.LAMP", layer.name));
+    }
+  }
+  return fmt::format("{}, {}", fmt::join(names, ", "), fmt::join(lamp_names, ", "));
 }
 
 Aov::Aov(const std::string &list)
@@ -88,18 +101,18 @@ Aov::Aov(const std::string &list)
     names_.push_back(list.substr(begin, end - begin));
     begin = end + 1;
     const std::string &name = names_.back();
-    if (std::ranges::find(plain_names, layer_kind(name)) == plain_names.end()) {
+    if (find_layer(name) == nullptr) {
       throw UsageError(fmt::format("--aov: no layer '{}'; there are: {}", name, aov_names()));
     }
   }
 }
 
-bool Aov::has(const std::string &name) const
+bool Aov::has(std::string_view name) const
 {
   return std::ranges::find(names_, name) != names_.end();
 }
 
-std::vector<std::string> Aov::lamps_of(const std::string &layer, std::span<const scene::PlacedLamp> lamps) const
+std::vector<std::string> Aov::lamps_of(const eevee::PictureLayer &layer, std::span<const scene::PlacedLamp> lamps) const
 {
   std::vector<std::string> names;
   const auto add = [&](const std::string &name) {
@@ -108,11 +121,11 @@ std::vector<std::string> Aov::lamps_of(const std::string &layer, std::span<const
     }
   };
   for (const std::string &name : names_) {
-    if (name == layer) {
+    if (name == layer.name) {
       std::ranges::for_each(lamps, add, &scene::PlacedLamp::name);
     }
-    else if (layer_kind(name) == layer) {
-      add(name.substr(layer.size() + 1));
+    else if (find_layer(name) == &layer) {
+      add(name.substr(layer.name.size() + 1));
     }
   }
   return names;
@@ -121,24 +134,27 @@ std::vector<std::string> Aov::lamps_of(const std::string &layer, std::span<const
 void Aov::check(const scene::Scene &scene) const
 {
   const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
-  for (const std::string_view layer : lamp_names) {
-    for (const std::string &name : lamps_of(std::string(layer), lamps)) {
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (!layer.has_lamps()) {
+      continue;
+    }
+    for (const std::string &name : lamps_of(layer, lamps)) {
       // OpenEXR cuts longer names off. A dot, a dot and a letter are added.
-      if (layer.size() + name.size() + 3 > 255) {
+      if (layer.name.size() + name.size() + 3 > 255) {
         throw std::runtime_error(fmt::format("{}: --aov {}: the name of lamp '{}' is too long for a channel of an EXR",
-                                             scene.path, layer, name));
+                                             scene.path, layer.name, name));
       }
       const std::size_t count = lamps_named(lamps, name).size();
       if (count == 0) {
         std::set<std::string> names;
         std::ranges::transform(lamps, std::inserter(names, names.end()), &scene::PlacedLamp::name);
-        throw std::runtime_error(fmt::format("{}: --aov {}.{}: no lamp '{}'; visible lamps: {}", scene.path, layer,
+        throw std::runtime_error(fmt::format("{}: --aov {}.{}: no lamp '{}'; visible lamps: {}", scene.path, layer.name,
                                              name, name,
                                              names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
       }
-      if (count > 1 && layer == "visibility") {
-        throw std::runtime_error(fmt::format("{}: --aov visibility: {} lamps have the name '{}'; each needs its own",
-                                             scene.path, count, name));
+      if (count > 1 && layer.source == LayerSource::Visibility) {
+        throw std::runtime_error(fmt::format("{}: --aov {}: {} lamps have the name '{}'; each needs its own",
+                                             scene.path, layer.name, count, name));
       }
     }
   }
@@ -147,9 +163,8 @@ void Aov::check(const scene::Scene &scene) const
 std::vector<std::string> Aov::warnings(const scene::Scene &scene) const
 {
   std::vector<std::string> layers;
-  std::ranges::copy_if(names_, std::back_inserter(layers), [](const std::string &name) {
-    return std::ranges::find(surface_names, layer_kind(name)) != surface_names.end();
-  });
+  std::ranges::copy_if(names_, std::back_inserter(layers),
+                       [](const std::string &name) { return find_layer(name)->is_of_surfaces(); });
   const bool has_blended = std::ranges::any_of(scene.objects(), [&](const scene::Object &object) {
     const scene::Mesh &mesh = scene.meshes()[object.mesh];
     return render_scene::is_blended(scene, mesh) && render_scene::is_drawable(scene, scene.material_of(mesh));
@@ -160,9 +175,9 @@ std::vector<std::string> Aov::warnings(const scene::Scene &scene) const
         fmt::format("--aov {}: blended surfaces are not in these layers; the opaque surface behind them is",
                     fmt::join(layers, ",")));
   }
-  for (const char *name : {"light", "visibility"}) {
-    if (has(name) && scene.placed_lamps().empty()) {
-      warnings.push_back(fmt::format("--aov {}: the scene has no lamps, so there are no such layers", name));
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (layer.has_lamps() && has(layer.name) && scene.placed_lamps().empty()) {
+      warnings.push_back(fmt::format("--aov {}: the scene has no lamps, so there are no such layers", layer.name));
     }
   }
   return warnings;
@@ -171,20 +186,19 @@ std::vector<std::string> Aov::warnings(const scene::Scene &scene) const
 void Aov::add_light(eevee::SceneRenderer &renderer, const scene::PlacedCamera &camera, int sample_count,
                     AovLayers &layers) const
 {
-  using eevee::LightPart;
-  const auto render_part = [&](const LightPart &part) {
-    return eevee::render_light_layer(renderer, camera, sample_count, part);
-  };
-  for (const std::string &name : lamps_of("light", renderer.render_scene().lamps())) {
-    layers.layers.push_back(
-        layer_of("light." + name, "RGB", eevee::render_lamp_layer(renderer, camera, sample_count, name)));
-  }
-  // The world comes last, because the layers before leave it out.
-  if (has("emission")) {
-    layers.layers.push_back(layer_of("emission", "RGB", render_part({LightPart::Kind::Emission})));
-  }
-  if (has("world")) {
-    layers.layers.push_back(layer_of("world", "RGB", render_part({LightPart::Kind::World})));
+  using Kind = eevee::LightPart::Kind;
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (layer.source == LayerSource::Lamp) {
+      for (const std::string &name : lamps_of(layer, renderer.render_scene().lamps())) {
+        layers.layers.push_back(layer_of(layer, fmt::format("{}.{}", layer.name, name),
+                                         eevee::render_lamp_layer(renderer, camera, sample_count, name)));
+      }
+    }
+    else if (has(layer.name) && (layer.source == LayerSource::Emission || layer.source == LayerSource::World)) {
+      const Kind kind = layer.source == LayerSource::World ? Kind::World : Kind::Emission;
+      layers.layers.push_back(
+          layer_of(layer, std::string(layer.name), eevee::render_light_layer(renderer, camera, sample_count, {kind})));
+    }
   }
 }
 
@@ -192,10 +206,13 @@ void Aov::add_surfaces(eevee::SceneRenderer &renderer, const scene::PlacedCamera
                        AovLayers &layers) const
 {
   const auto lamps = renderer.render_scene().lamps();
-  const std::vector<std::string> visible = lamps_of("visibility", lamps);
-  eevee::SurfaceRequest request{.has_centers = has("depth") || has("position") || has("normal"),
-                                .has_means = has("albedo") || has("roughness"),
-                                .has_objects = has("crypto_object") || has("crypto_material")};
+  eevee::SurfaceRequest request = eevee::surface_request(names_);
+  std::vector<std::string> visible;
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (layer.source == LayerSource::Visibility) {
+      visible = lamps_of(layer, lamps);
+    }
+  }
   for (const std::string &name : visible) {
     request.visible_lamps.push_back(lamps_named(lamps, name).front());
   }
@@ -203,24 +220,21 @@ void Aov::add_surfaces(eevee::SceneRenderer &renderer, const scene::PlacedCamera
     return;
   }
   eevee::SurfaceLayers surfaces = eevee::render_surface_layers(renderer, camera, sample_count, request);
-  const auto add = [&](const char *name, const char *channels, std::span<const glm::vec4> pixels, int first = 0) {
-    if (has(name)) {
-      layers.layers.push_back(layer_of(name, channels, pixels, first));
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    const std::vector<glm::vec4> *pixels = surfaces.pixels(layer.source);
+    if (pixels != nullptr && has(layer.name)) {
+      layers.layers.push_back(layer_of(layer, std::string(layer.name), *pixels));
     }
-  };
-  add("depth", "Z", surfaces.position_depth, 3);
-  add("position", "XYZ", surfaces.position_depth);
-  add("normal", "XYZ", surfaces.normal);
-  add("albedo", "RGB", surfaces.albedo_roughness);
-  add("roughness", "V", surfaces.albedo_roughness, 3);
-  for (std::size_t i = 0; i < visible.size(); i++) {
-    layers.layers.push_back({"visibility." + visible[i], "V", std::move(surfaces.visibilities[i])});
-  }
-  for (const auto &[option, name] :
-       {std::pair("crypto_object", "CryptoObject"), std::pair("crypto_material", "CryptoMaterial")}) {
-    if (has(option)) {
-      Cryptomatte matte = make_cryptomatte(name, surfaces.objects,
-                                           object_names(renderer, std::string_view(option) == "crypto_material"));
+    if (layer.source == LayerSource::Visibility) {
+      for (std::size_t i = 0; i < visible.size(); i++) {
+        layers.layers.push_back({fmt::format("{}.{}", layer.name, visible[i]), std::string(layer.channels),
+                                 std::move(surfaces.visibilities[i])});
+      }
+    }
+    const bool has_materials = layer.source == LayerSource::Materials;
+    if (has(layer.name) && (has_materials || layer.source == LayerSource::Objects)) {
+      Cryptomatte matte = make_cryptomatte(has_materials ? "CryptoMaterial" : "CryptoObject", surfaces.objects,
+                                           object_names(renderer, has_materials));
       std::ranges::move(matte.layers, std::back_inserter(layers.layers));
       std::ranges::move(matte.metadata, std::back_inserter(layers.metadata));
     }

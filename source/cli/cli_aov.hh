@@ -6,6 +6,7 @@
 #include "eevee_picture_layers.hh"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gnomon::cli {
@@ -39,9 +40,9 @@ class Aov {
                                  int sample_count) const;
 
  private:
-  [[nodiscard]] bool has(const std::string &name) const;
+  [[nodiscard]] bool has(std::string_view name) const;
   /** Names of the lamps for which the list has a \a layer: all, or those after the dots, each once. */
-  [[nodiscard]] std::vector<std::string> lamps_of(const std::string &layer,
+  [[nodiscard]] std::vector<std::string> lamps_of(const eevee::PictureLayer &layer,
                                                   std::span<const scene::PlacedLamp> lamps) const;
   void add_light(eevee::SceneRenderer &renderer, const scene::PlacedCamera &camera, int sample_count,
                  AovLayers &layers) const;

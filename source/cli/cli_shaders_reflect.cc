@@ -3,7 +3,7 @@
 
 #include "cli_shader_programs.hh"
 
-#include "shader_check_reflection.hh"
+#include "shader_check_program.hh"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>

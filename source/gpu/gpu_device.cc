@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_device.hh"
 
+#include "gpu_range_allocator.hh"
+#include "gpu_shader_cache.hh"
 #include "gpu_validate.hh"
 
 #include <fmt/format.h>
@@ -13,8 +15,10 @@ namespace gnomon::gpu {
 Device::Device(const Limits &limits, MessageSink sink, std::filesystem::path shader_cache_folder)
     : limits_(limits),
       sink_(std::move(sink)),
-      shader_cache_(std::move(shader_cache_folder)),
-      link_(std::make_shared<DeviceLink>(DeviceLink{this}))
+      shader_cache_(std::make_unique<ShaderDiskCache>(std::move(shader_cache_folder))),
+      link_(std::make_shared<DeviceLink>(DeviceLink{this})),
+      vertices_(std::make_unique<RangeAllocator>()),
+      indices_(std::make_unique<RangeAllocator>())
 {
   for (std::vector<Slot> &slots : slots_) {
     slots.emplace_back().info.name = "none";
@@ -218,8 +222,8 @@ const ResourceInfo *Device::find(ResourceKind kind, ResourceId id) const
 
 bool Device::has_batch_data(std::uint32_t first_index, std::uint32_t index_count, std::int32_t base_vertex) const
 {
-  return base_vertex >= 0 && vertices_.is_allocated(std::uint32_t(base_vertex), 1) &&
-         indices_.is_allocated(first_index, index_count);
+  return base_vertex >= 0 && vertices_->is_allocated(std::uint32_t(base_vertex), 1) &&
+         indices_->is_allocated(first_index, index_count);
 }
 
 std::vector<LiveResource> Device::live() const

@@ -8,19 +8,22 @@
 #include "gpu_error.hh"
 #include "gpu_framebuffer.hh"
 #include "gpu_packet.hh"
-#include "gpu_range_allocator.hh"
 #include "gpu_shader.hh"
-#include "gpu_shader_cache.hh"
 #include "gpu_texture.hh"
 
 #include <array>
 #include <atomic>
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <thread>
 
 namespace gnomon::gpu {
+
+class RangeAllocator;
+class ShaderDiskCache;
 
 /** Measures the times between pairs of marks on the device. \see Device::time_begin */
 class TimerQuery : public Resource {
@@ -404,7 +407,7 @@ class Device {
 
   const Limits limits_;
   const MessageSink sink_;
-  const ShaderDiskCache shader_cache_;
+  const std::unique_ptr<const ShaderDiskCache> shader_cache_;
 
   const std::thread::id thread_ = std::this_thread::get_id();
 
@@ -416,8 +419,8 @@ class Device {
   std::array<std::vector<Slot>, kind_count> slots_;
   /** The next id of each unused index. Excludes indices whose generations are used up. */
   std::array<std::vector<ResourceId>, kind_count> free_ids_;
-  RangeAllocator vertices_;
-  RangeAllocator indices_;
+  std::unique_ptr<RangeAllocator> vertices_;
+  std::unique_ptr<RangeAllocator> indices_;
   /** By description and text. */
   std::map<std::string, KeptShader, std::less<>> shared_shaders_;
   std::uint64_t shared_shaders_asked_ = 0;
@@ -495,6 +498,9 @@ enum class ContextKind {
    */
   Host,
 };
+
+/** `$XDG_CACHE_HOME/gnomon` or `$HOME/.cache/gnomon`; empty if neither variable is set. */
+[[nodiscard]] std::filesystem::path default_shader_cache_folder();
 
 struct GlDeviceDesc {
   ContextKind context = ContextKind::Headless;

@@ -2,6 +2,8 @@
 // The create functions of Device: they check descriptions against the limits, and issue ids.
 #include "gpu_device.hh"
 
+#include "gpu_range_allocator.hh"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -194,8 +196,8 @@ Batch Device::create_batch(const BatchDesc &desc)
   }
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
-  const std::uint32_t vertex_capacity = vertices_.capacity();
-  const std::uint32_t index_capacity = indices_.capacity();
+  const std::uint32_t vertex_capacity = vertices_->capacity();
+  const std::uint32_t index_capacity = indices_->capacity();
   const BatchRange range = allocate_range(desc);
   try {
     Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes(desc), [&](ResourceId id) {
@@ -207,7 +209,7 @@ Batch Device::create_batch(const BatchDesc &desc)
                            .second_uvs = kept(desc.second_uvs),
                            .tangents = kept(desc.tangents),
                            .colors = kept(desc.colors)};
-      return Operation::CreateBatch{id, data, range, vertices_.capacity(), indices_.capacity()};
+      return Operation::CreateBatch{id, data, range, vertices_->capacity(), indices_->capacity()};
     });
     count_upload(ResourceKind::Batch, resource.id(), size_bytes(desc));
     return {std::move(resource), range};
@@ -215,8 +217,8 @@ Batch Device::create_batch(const BatchDesc &desc)
   catch (...) {
     free_range(range);
     // The backend may have failed to grow its buffers. Smaller batches still fit into the old capacity.
-    vertices_.shrink(vertex_capacity);
-    indices_.shrink(index_capacity);
+    vertices_->shrink(vertex_capacity);
+    indices_->shrink(index_capacity);
     throw;
   }
 }
@@ -258,9 +260,9 @@ BatchRange Device::allocate_range(const BatchDesc &desc)
   const auto vertex_count = std::uint32_t(desc.positions.size());
   const auto index_count = std::uint32_t(desc.indices.size());
   try {
-    range.base_vertex = std::int32_t(vertices_.allocate(vertex_count));
+    range.base_vertex = std::int32_t(vertices_->allocate(vertex_count));
     range.vertex_count = vertex_count;
-    range.first_index = indices_.allocate(index_count);
+    range.first_index = indices_->allocate(index_count);
     range.index_count = index_count;
   }
   catch (const Error &error) {
@@ -272,8 +274,8 @@ BatchRange Device::allocate_range(const BatchDesc &desc)
 
 void Device::free_range(const BatchRange &range)
 {
-  vertices_.free(std::uint32_t(range.base_vertex), range.vertex_count);
-  indices_.free(range.first_index, range.index_count);
+  vertices_->free(std::uint32_t(range.base_vertex), range.vertex_count);
+  indices_->free(range.first_index, range.index_count);
 }
 
 static void check_limits(std::string_view name, const ShaderInterface &interface, const Limits &limits)

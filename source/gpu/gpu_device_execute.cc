@@ -2,6 +2,8 @@
 // The functions of Device that run on the device's thread.
 #include "gpu_device.hh"
 
+#include "gpu_shader_cache.hh"
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -151,12 +153,12 @@ void Device::execute(const Operation::CreateShader &create, Packet *packet)
 void Device::make_shader(const Operation::CreateShader &create)
 {
   const std::string key = ShaderDiskCache::key_of(create.stages, description());
-  CachedShader shader = shader_cache_.load(key).value_or(CachedShader());
+  CachedShader shader = shader_cache_->load(key).value_or(CachedShader());
   const std::vector<std::byte> known = shader.compiled;
   shader_create(create, shader.compiled);
   const bool is_loaded = !known.empty() && shader.compiled == known;
   if (!is_loaded && !shader.compiled.empty()) {
-    shader_cache_.store(key, shader);
+    shader_cache_->store(key, shader);
   }
   counters_.shaders_made++;
   counters_.shaders_from_cache += is_loaded;

@@ -2,6 +2,7 @@
 #include "gpu_packet.hh"
 
 #include "gpu_device.hh"
+#include "gpu_range_allocator.hh"
 
 #include <algorithm>
 #include <cstring>
@@ -237,8 +238,8 @@ void Device::take_losses()
     }
     in_flight_.clear();
     // The backend may have failed to grow its buffers. Smaller batches still fit into the old capacity.
-    vertices_.shrink(0);
-    indices_.shrink(0);
+    vertices_->shrink(0);
+    indices_->shrink(0);
     losses_taken_ = losses;
   }
   std::erase_if(in_flight_, [&](const InFlight &packet) { return packet.serial <= executed; });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_shader_cache.hh"
 
+#include "gpu_device.hh"
+
 #include "output_file.hh"
 
 #include <fmt/format.h>

@@ -50,7 +50,4 @@ class ShaderDiskCache {
   std::uintmax_t size_bytes_max_;
 };
 
-/** `$XDG_CACHE_HOME/gnomon` or `$HOME/.cache/gnomon`; empty if neither variable is set. */
-[[nodiscard]] std::filesystem::path default_shader_cache_folder();
-
 }  // namespace gnomon::gpu

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "internal/measure_bench_meshes.hh"
 
+#include "eevee_shaders.hh"
+
+#include "draw_pass.hh"
 #include "draw_view_shared.h"
-#include "draw_visible.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
 

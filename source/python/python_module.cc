@@ -8,6 +8,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <span>
 #include <string_view>
 
@@ -219,8 +220,13 @@ py::tuple refine(Renderer &renderer, double seconds, const std::optional<Thing<s
   return py::make_tuple(picture_array(std::move(pixels), size_px), is_complete);
 }
 
-constexpr std::array<std::string_view, 10> layer_names = {"combined",  "depth",    "position", "normal", "albedo",
-                                                          "roughness", "emission", "world",    "light",  "ids"};
+/** Whether Renderer.layers returns the layer. */
+bool is_array(const eevee::PictureLayer &layer)
+{
+  using eevee::LayerSource;
+  return layer.source != LayerSource::Visibility && layer.source != LayerSource::Objects &&
+         layer.source != LayerSource::Materials;
+}
 
 /** Channels of a picture_array, without a copy. A single one has no axis of its own. */
 py::object channels(const py::array_t<float> &array, int first, int count)
@@ -273,53 +279,59 @@ void add_ids(Renderer &renderer, std::span<const glm::vec4> normal, glm::ivec2 s
 py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
                 const std::optional<Thing<scene::Node>> &camera, const py::object &progress)
 {
-  for (const std::string &name : names) {
-    if (std::ranges::find(layer_names, name) == layer_names.end()) {
-      throw py::value_error(
-          fmt::format("layers: there is no layer '{}'; there are: {}", name, fmt::join(layer_names, ", ")));
+  using eevee::LayerSource;
+  std::vector<std::string_view> known;
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (is_array(layer)) {
+      known.push_back(layer.name);
     }
   }
-  const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
-  const LayerRequest request{.surfaces = {.has_centers = has("depth") || has("position") || has("normal") || has("ids"),
-                                          .has_means = has("albedo") || has("roughness")},
-                             .has_light = has("light"),
-                             .has_emission = has("emission"),
-                             .has_world = has("world")};
+  std::set<LayerSource> sources;
+  for (const std::string &name : names) {
+    const auto layer = std::ranges::find(eevee::picture_layers, name, &eevee::PictureLayer::name);
+    if (layer == eevee::picture_layers.end() || !is_array(*layer)) {
+      throw py::value_error(fmt::format("layers: there is no layer '{}'; there are: {}", name, fmt::join(known, ", ")));
+    }
+    sources.insert(layer->source);
+  }
+  const LayerRequest request{.surfaces = eevee::surface_request(names),
+                             .has_light = sources.contains(LayerSource::Lamp),
+                             .has_emission = sources.contains(LayerSource::Emission),
+                             .has_world = sources.contains(LayerSource::World)};
   const glm::ivec2 size_px = renderer.size_px();
   Layers drawn = drawn_by(renderer, camera, progress, [&](const scene::PlacedCamera &placed, const auto &report) {
     return renderer.render_layers(placed, {.progress = report}, request);
   });
   py::dict arrays;
-  const auto add = [&](const char *name, const py::array_t<float> &array, int first, int count) {
-    if (has(name)) {
-      arrays[name] = channels(array, first, count);
-    }
-  };
-  const auto array_of = [&](std::vector<glm::vec4> &pixels) { return picture_array(std::move(pixels), size_px); };
-  if (has("combined")) {
-    arrays["combined"] = array_of(drawn.picture);
+  if (sources.contains(LayerSource::Ids)) {
+    add_ids(renderer, drawn.surfaces.normal, size_px, arrays);
   }
-  if (request.surfaces.has_centers) {
-    if (has("ids")) {
-      add_ids(renderer, drawn.surfaces.normal, size_px, arrays);
-    }
-    const py::array_t<float> place = array_of(drawn.surfaces.position_depth);
-    add("depth", place, 3, 1);
-    add("position", place, 0, 3);
-    add("normal", array_of(drawn.surfaces.normal), 0, 3);
-  }
-  if (request.surfaces.has_means) {
-    const py::array_t<float> means = array_of(drawn.surfaces.albedo_roughness);
-    add("albedo", means, 0, 3);
-    add("roughness", means, 3, 1);
-  }
-  for (const auto &[name, pixels] : {std::pair("emission", &drawn.emission), std::pair("world", &drawn.world)}) {
-    if (has(name)) {
-      add(name, array_of(*pixels), 0, 3);
+  // Layers of one source share its array.
+  std::map<LayerSource, py::array_t<float>> pixels;
+  for (const auto &[source, values] : {std::pair(LayerSource::Picture, &drawn.picture),
+                                       {LayerSource::Centers, &drawn.surfaces.position_depth},
+                                       {LayerSource::Normals, &drawn.surfaces.normal},
+                                       {LayerSource::Means, &drawn.surfaces.albedo_roughness},
+                                       {LayerSource::Emission, &drawn.emission},
+                                       {LayerSource::World, &drawn.world}}) {
+    if (sources.contains(source)) {
+      pixels.emplace(source, picture_array(std::move(*values), size_px));
     }
   }
-  for (auto &[name, pixels] : drawn.light) {
-    arrays[fmt::format("light.{}", name).c_str()] = channels(array_of(pixels), 0, 3);
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    if (std::ranges::find(names, layer.name) == names.end()) {
+      continue;
+    }
+    const int count = int(layer.channels.size());
+    if (const auto found = pixels.find(layer.source); found != pixels.end()) {
+      arrays[py::str(layer.name)] = channels(found->second, layer.first, count);
+    }
+    if (layer.source == LayerSource::Lamp) {
+      for (auto &[lamp, values] : drawn.light) {
+        arrays[py::str(fmt::format("{}.{}", layer.name, lamp))] =
+            channels(picture_array(std::move(values), size_px), layer.first, count);
+      }
+    }
   }
   return arrays;
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scene.hh"
+#include "render_scene.hh"
 
 #include "eevee_material_shared.h"
-#include "gpu_device.hh"
 
 namespace gnomon::render_scene {
 
@@ -33,20 +32,6 @@ namespace gnomon::render_scene {
 
 /** Part of white light that passes a white surface of the material, without its textures; for shadows. */
 [[nodiscard]] float transmitted_part(const scene::Material &material);
-
-/** The kinds of surface inputs, with the fewest inputs first. Each class has its own shader variants. */
-enum class MaterialClass : std::uint8_t {
-  /** Only the factors of the material. */
-  Plain,
-  /** Also a base colour texture, with the first set of uvs and without a uv transform. */
-  BaseColor,
-  /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours, blending, surface functions. */
-  Full,
-  /** Also a coat, sheen or anisotropy, with their textures. */
-  Layered,
-  /** Also transmission, with its textures. */
-  Transmissive
-};
 
 /** Whether \a slot can be drawn on \a mesh: the texture, its image and the mesh's uvs exist. */
 [[nodiscard]] bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot);

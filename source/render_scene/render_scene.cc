@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "render_scene.hh"
 
+#include "render_materials.hh"
+#include "render_world.hh"
+
 #include "memory_pages.hh"
 
 #include <glm/common.hpp>
@@ -32,6 +35,13 @@ scene::PlacedCamera RenderScene::relative(scene::PlacedCamera camera) const
   return camera;
 }
 
+RenderScene::RenderScene(gpu::Device &device, const scene::Scene &scene)
+    : device_(device), scene_(scene), materials_(std::make_unique<MaterialTable>())
+{
+}
+
+RenderScene::~RenderScene() = default;
+
 void RenderScene::update()
 {
   if (is_up_to_date()) {
@@ -39,7 +49,7 @@ void RenderScene::update()
   }
   host_batch_changes_ = meshes_.update(scene_.meshes());
   host_texture_changes_ = images_.update(scene_);
-  materials_.update(scene_);
+  materials_->update(scene_);
   update_objects();
   update_lamps();
   update_revisions();
@@ -228,7 +238,7 @@ void RenderScene::update_revisions()
 void RenderScene::upload(MaterialClass widest)
 {
   objects_.upload(device_);
-  materials_.upload(device_, widest);
+  materials_->upload(device_, widest);
 }
 
 }  // namespace gnomon::render_scene

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "render_images.hh"
-#include "render_materials.hh"
 #include "render_meshes.hh"
-#include "render_world.hh"
 
 #include "draw_objects.hh"
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -18,6 +17,23 @@
  * resources of removed meshes and images. Resources are created and written when a pass needs them.
  */
 namespace gnomon::render_scene {
+
+class MaterialTable;
+struct WorldLight;
+
+/** The kinds of surface inputs, with the fewest inputs first. Each class has its own shader variants. */
+enum class MaterialClass : std::uint8_t {
+  /** Only the factors of the material. */
+  Plain,
+  /** Also a base colour texture, with the first set of uvs and without a uv transform. */
+  BaseColor,
+  /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours, blending, surface functions. */
+  Full,
+  /** Also a coat, sheen or anisotropy, with their textures. */
+  Layered,
+  /** Also transmission, with its textures. */
+  Transmissive
+};
 
 /** A mesh at a node. \see RenderScene::object */
 struct RenderObject {
@@ -41,7 +57,8 @@ class RenderScene {
    * \a scene must outlive this object, and this object must be destroyed before \a device. A scene or a device may be
    * used by several RenderScenes.
    */
-  RenderScene(gpu::Device &device, const scene::Scene &scene) : device_(device), scene_(scene) {}
+  RenderScene(gpu::Device &device, const scene::Scene &scene);
+  ~RenderScene();
   RenderScene(const RenderScene &) = delete;
   RenderScene &operator=(const RenderScene &) = delete;
 
@@ -185,7 +202,7 @@ class RenderScene {
   }
   [[nodiscard]] const MaterialTable &materials() const
   {
-    return materials_;
+    return *materials_;
   }
   /**
    * Write the changed parts of `object_block` and of the blocks of materials. \see MaterialTable::upload
@@ -243,7 +260,7 @@ class RenderScene {
   std::uint64_t materials_revision_ = 0;
   Meshes meshes_;
   Images images_;
-  MaterialTable materials_;
+  std::unique_ptr<MaterialTable> materials_;
 };
 
 /**

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "render_scene.hh"
+#include "render_materials.hh"
 
 #include "draw_pass.hh"
 

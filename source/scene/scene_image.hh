@@ -10,18 +10,6 @@
 
 namespace gnomon::scene {
 
-/** How materials use the texels of an image. */
-enum class ImageUse {
-  /** Four linear values. */
-  Data,
-  /** Colours that are encoded as sRGB; alpha has no effect. */
-  Color,
-  /** The same of blended surfaces: a texel covers the part alpha, and counts by it in a mean. */
-  Coverage,
-  /** The same of masked surfaces: a texel covers all or nothing. */
-  Mask,
-};
-
 /**
  * The use of the image of one of the material's slots. Coverage and Mask: the base colour of a surface without a
  * surface function, which may show what alpha hides.

@@ -73,6 +73,18 @@ enum class TextureFilter { Nearest, Linear };
 /** The filter between mip levels of a minified texture. None: only the full size is read. */
 enum class MipFilter { None, Nearest, Linear };
 
+/** How materials use the texels of an image. */
+enum class ImageUse {
+  /** Four linear values. */
+  Data,
+  /** Colours that are encoded as sRGB; alpha has no effect. */
+  Color,
+  /** The same of blended surfaces: a texel covers the part alpha, and counts by it in a mean. */
+  Coverage,
+  /** The same of masked surfaces: a texel covers all or nothing. */
+  Mask,
+};
+
 /** An image and its sampler. */
 struct Texture {
   static constexpr std::string_view kind_name = "texture";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "shader_check_reflection.hh"
+#include "shader_check_program.hh"
 
 #include "internal/shader_check_compilation.hh"
 #include "internal/shader_check_log.hh"

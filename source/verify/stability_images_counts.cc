@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "internal/stability_images.hh"
 
+#include "eevee_esm_shared.h"
+#include "eevee_light_shared.h"
+#include "eevee_shadow_shared.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

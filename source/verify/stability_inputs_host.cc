@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/stability_inputs.hh"
 
+#include "shadows/shadows.hh"
+
 #include "measure_scene.hh"
 
 #include <fmt/format.h>

@@ -2,6 +2,8 @@
 // Each operation of a frame fails once; the next frame makes again what the lost one held.
 #include "frames/frames_scene.hh"
 
+#include "shadows/shadows.hh"
+
 #include <gtest/gtest.h>
 
 namespace gnomon::eevee {

@@ -4,6 +4,9 @@
 
 #include "draw_objects.hh"
 #include "eevee_inspection.hh"
+#include "eevee_light_shared.h"
+#include "eevee_material_shared.h"
+#include "eevee_shadow_shared.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 #include "render_scene.hh"
 
 #include "measure_scene.hh"
+#include "render_materials.hh"
 
 #include "gpu/gpu_testing.hh"
 

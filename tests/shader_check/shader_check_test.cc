@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "shader_check.hh"
+#include "shader_check_program.hh"
 #include "shader_check_reflection.hh"
 
 #include "gpu/gpu_testing.hh"

@@ -5,6 +5,7 @@
 #include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
 #include "reference_visibility.hh"
+#include "shadows/shadow_octahedral_store.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -5,6 +5,7 @@
 #include "eevee_engine_data.hh"
 #include "eevee_frame.hh"
 #include "eevee_material_variants.hh"
+#include "eevee_shaders.hh"
 
 #include "draw_view_shared.h"
 
@@ -42,6 +43,11 @@ Settings offline_settings(int sample_count)
     shadow.cascades.texel_in_pixels_enlarged = std::max(texel_in_pixels, 0.8 / std::sqrt(double(sample_count)));
   }
   return settings;
+}
+
+Engine::Engine(render_scene::RenderScene &scene, const Settings &settings)
+    : scene_(scene), settings_(settings), shaders_(std::make_shared<ShaderCache>())
+{
 }
 
 /** Check all settings except those of shadows, which SceneShadows::sync checks. \throws gpu::Error */

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_features.hh"
 #include "eevee_settings.hh"
-#include "eevee_shaders.hh"
-#include "shadows/shadows.hh"
 
 #include "draw_engine.hh"
 #include "draw_viewport.hh"
 #include "render_scene.hh"
-#include "render_surfaces.hh"
 
 #include <memory>
-#include <optional>
+#include <string>
+#include <vector>
 
 namespace gnomon::eevee {
 
@@ -26,6 +23,7 @@ namespace gnomon::eevee {
 
 struct Data;
 struct PictureKey;
+class ShaderCache;
 struct SharedData;
 
 /**
@@ -43,10 +41,7 @@ class Engine final : public draw::Engine {
    * \a scene must outlive the engine, and the viewports that it draws in. After an edit of the scene call
    * render_scene::RenderScene::update, then draw::Viewport::sync with the objects of \a scene.
    */
-  Engine(render_scene::RenderScene &scene, const Settings &settings)
-      : scene_(scene), settings_(settings), shaders_(std::make_shared<ShaderCache>())
-  {
-  }
+  Engine(render_scene::RenderScene &scene, const Settings &settings);
   /**
    * An engine for the scene of \a other that shares its programs, so that what one has compiled the other need not.
    * Both have the same kernel of percentage-closer filtering (ShadowSettings::pcf), and reload_shaders of one is

@@ -6,6 +6,7 @@
 #include "eevee_settings.hh"
 #include "eevee_shaders.hh"
 
+#include "draw_pass.hh"
 #include "draw_viewport.hh"
 #include "render_scene.hh"
 

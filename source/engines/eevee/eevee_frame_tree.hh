@@ -27,6 +27,18 @@ struct FrameNode {
   std::vector<FrameNode> children{};
 };
 
+/** Counters of the shadow layers that were submitted since the creation of the shadows. */
+struct ShadowCounters {
+  /** Number of updates of a lamp in which at least one layer was drawn. */
+  std::uint64_t lamps_updated = 0;
+  /** Number of layers drawn: faces of cubes, maps of spots, cascades of suns. */
+  std::uint64_t faces_drawn = 0;
+  /** Number of layers of updated lamps that were not drawn, because they are up to date, empty or not needed. */
+  std::uint64_t faces_skipped = 0;
+  /** Number of caster instances drawn. A caster counts once for each layer that it touches. */
+  std::uint64_t caster_draws = 0;
+};
+
 /** The child of \a node with the name \a what; nullptr if there is none. */
 [[nodiscard]] const FrameNode *find(const FrameNode &node, std::string_view what);
 

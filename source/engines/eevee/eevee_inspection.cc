@@ -198,6 +198,11 @@ const Shadows &Inspection::shadows() const
   return data.shadows;
 }
 
+const ShadowCounters &Inspection::shadow_counters() const
+{
+  return shadows().counters();
+}
+
 void Inspection::invalidate_shadows() const
 {
   engine_data().shared->shadows.invalidate();

@@ -12,6 +12,8 @@
 
 namespace gnomon::eevee {
 
+class Shadows;
+
 /** Device time of a step of the frame in seconds, summed over the samples of a picture. */
 struct StepTime {
   std::string step;
@@ -89,10 +91,7 @@ class Inspection {
   /** The shadow layers after the last draw. \pre the viewport was synced */
   [[nodiscard]] const Shadows &shadows() const;
   /** Counters of the shadow layers that this viewport drew. Viewports share layers. \pre the viewport was synced */
-  [[nodiscard]] const ShadowCounters &shadow_counters() const
-  {
-    return shadows().counters();
-  }
+  [[nodiscard]] const ShadowCounters &shadow_counters() const;
   /**
    * Edge of a texel of the lamp's shadow at a position, perpendicular to the light, metres. 0 where the lamp has no
    * shadow there.

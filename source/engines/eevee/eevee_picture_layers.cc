@@ -99,6 +99,31 @@ std::vector<glm::vec4> render_lamp_layer(SceneRenderer &renderer, const scene::P
   return sum;
 }
 
+const std::vector<glm::vec4> *SurfaceLayers::pixels(LayerSource source) const
+{
+  switch (source) {
+    case LayerSource::Centers: return &position_depth;
+    case LayerSource::Normals: return &normal;
+    case LayerSource::Means: return &albedo_roughness;
+    default: return nullptr;
+  }
+}
+
+SurfaceRequest surface_request(std::span<const std::string> names)
+{
+  SurfaceRequest request;
+  for (const PictureLayer &layer : picture_layers) {
+    if (std::ranges::find(names, layer.name) == names.end()) {
+      continue;
+    }
+    request.has_centers |= layer.source == LayerSource::Centers || layer.source == LayerSource::Normals ||
+                           layer.source == LayerSource::Ids;
+    request.has_means |= layer.source == LayerSource::Means;
+    request.has_objects |= layer.source == LayerSource::Objects || layer.source == LayerSource::Materials;
+  }
+  return request;
+}
+
 /** Add one sample of the picture to \a layers. */
 static void add_sample(SceneRenderer &renderer, const draw::View &view, int sample, double weight_sum,
                        const SurfaceRequest &request, SurfaceLayers &layers)

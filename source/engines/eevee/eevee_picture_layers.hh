@@ -3,6 +3,7 @@
 
 #include "eevee_scene_renderer.hh"
 
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -12,6 +13,67 @@
  * but are no surfaces here: the opaque surface behind them is.
  */
 namespace gnomon::eevee {
+
+/** What a layer is made from. */
+enum class LayerSource {
+  /** The picture itself. */
+  Picture,
+  /** SurfaceLayers::position_depth, normal, albedo_roughness. */
+  Centers,
+  Normals,
+  Means,
+  /** SurfaceLayers::visibilities, and objects by their nodes and by their materials. */
+  Visibility,
+  Objects,
+  Materials,
+  /** Light of a lamp, of surfaces, of the world. */
+  Lamp,
+  Emission,
+  World,
+  /** The objects of SurfaceLayers::normal. */
+  Ids,
+};
+
+/** A layer by the name that users write: `gnomon render --aov`, Renderer.layers of Python. */
+struct PictureLayer {
+  std::string_view name;
+  LayerSource source;
+  /** Channels in an EXR, a letter each. Empty: no channels of floats, or others than a single layer's. */
+  std::string_view channels = "";
+  /** Component of the source's pixels that the first channel shows. */
+  int first = 0;
+
+  /** Whether there is a layer for each lamp, which has the lamp's name after a dot. */
+  [[nodiscard]] constexpr bool has_lamps() const
+  {
+    return source == LayerSource::Lamp || source == LayerSource::Visibility;
+  }
+  /** Whether the layer shows opaque surfaces alone. */
+  [[nodiscard]] constexpr bool is_of_surfaces() const
+  {
+    return source >= LayerSource::Centers && source <= LayerSource::Materials;
+  }
+};
+
+/**
+ * All layers. A host has those whose source it draws. Those of light are drawn in this order: the world's comes last,
+ * because the others leave it out. doc/layers.md describes the layers.
+ */
+inline constexpr std::array picture_layers = {
+    PictureLayer{"combined", LayerSource::Picture, "RGBA"},
+    PictureLayer{"depth", LayerSource::Centers, "Z", 3},
+    PictureLayer{"position", LayerSource::Centers, "XYZ"},
+    PictureLayer{"normal", LayerSource::Normals, "XYZ"},
+    PictureLayer{"albedo", LayerSource::Means, "RGB"},
+    PictureLayer{"roughness", LayerSource::Means, "V", 3},
+    PictureLayer{"light", LayerSource::Lamp, "RGB"},
+    PictureLayer{"emission", LayerSource::Emission, "RGB"},
+    PictureLayer{"world", LayerSource::World, "RGB"},
+    PictureLayer{"visibility", LayerSource::Visibility, "V"},
+    PictureLayer{"crypto_object", LayerSource::Objects},
+    PictureLayer{"crypto_material", LayerSource::Materials},
+    PictureLayer{"ids", LayerSource::Ids},
+};
 
 /** Layers that render_surface_layers makes. */
 struct SurfaceRequest {
@@ -46,7 +108,13 @@ struct SurfaceLayers {
   std::vector<std::vector<Coverage>> objects;
   /** Visibility of each of SurfaceRequest::visible_lamps, filtered and multiplied by the coverage likewise. */
   std::vector<std::vector<float>> visibilities;
+
+  /** The pixels of a source; nullptr for sources without a vector for each pixel. */
+  [[nodiscard]] const std::vector<glm::vec4> *pixels(LayerSource source) const;
 };
+
+/** What the layers of \a names need, visible_lamps apart. Other names than those of picture_layers need nothing. */
+[[nodiscard]] SurfaceRequest surface_request(std::span<const std::string> names);
 
 /**
  * The picture of \a camera with a part of its light. \a sample_count: samples of the picture.

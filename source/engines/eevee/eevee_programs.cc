@@ -36,7 +36,7 @@ constexpr std::array<FeatureDefine, 19> feature_table = {
      {Feature::LightClusters, "USE_LIGHT_CLUSTERS",
       "many lamps have a range, or there are more than light_block holds"}}};
 
-/** Features that only affect lighting. Variants without Feature::Light have none of them. */
+/** Features of lighting. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
                                    Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm |
                                    Feature::LampShape | Feature::World | Feature::Multiscatter | Feature::LightClusters;
@@ -115,62 +115,82 @@ constexpr std::array<ShaderDeclaration, 27> declarations = {{
      "eevee/eevee_adaptive_scale_frag.glsl", Feature::None, Feature::None, "means of pixels without further samples"},
 }};
 
+/** What follows from the features of a rule. */
+enum class RuleKind {
+  /** A scene has all of `then`. */
+  All,
+  /** A scene has at least one of `then`. */
+  Any,
+  /** `then` changes nothing. Variants are without it. */
+  No,
+  /** A scene may lack `then`. Variants have all of it: it costs little, and there are fewer variants. */
+  Add,
+  /** `when` changes nothing unless there is one of `then`. Variants without `then` are without `when`. */
+  Need,
+};
+
+/** A rule for features with at least one of `when`, and of `with` and of `with_too`, unless these are None. */
+struct FeatureRule {
+  Feature when;
+  RuleKind kind;
+  Feature then;
+  Feature with = Feature::None;
+  Feature with_too = Feature::None;
+};
+
+/** Features that change nothing if nothing shines. */
+constexpr Feature lit_features = without(light_features, Feature::Light) | Feature::Layers | Feature::Transmission;
+constexpr Feature depth_maps = Feature::ShadowCube | Feature::ShadowMap;
+constexpr Feature often_together = Feature::World | Feature::Layers | Feature::Multiscatter;
+
+/** with_variant applies the rules in this order. shader_variants returns the masks that fulfil all of them. */
+constexpr std::array<FeatureRule, 17> feature_rules = {{
+    // Variants for full materials always read the base colour texture. In programs that only test alpha, a full
+    // material makes a difference only with an alpha mask.
+    {Feature::FullMaterial, RuleKind::No, Feature::BaseColorTexture},
+    {Feature::FullMaterial, RuleKind::All, Feature::AlphaMask},
+    // Blended casters read the same inputs as masks.
+    {Feature::OpacityThreshold, RuleKind::All, alpha_features},
+    // Layers lie over full materials, and reflect. Transmission is one class of materials with layers.
+    {Feature::Layers, RuleKind::All, Feature::FullMaterial | Feature::Specular},
+    {Feature::Transmission, RuleKind::All, Feature::Layers},
+    // Cubes and exponential maps exist for point, spot and area lamps only. Percentage-closer filtering reads a cube
+    // or a planar map.
+    {Feature::ShadowCube | Feature::ShadowEsm, RuleKind::All, Feature::Punctual},
+    {Feature::ShadowPcf, RuleKind::Any, depth_maps},
+    {Feature::ShadowEvsm, RuleKind::All, Feature::ShadowEsm},
+    // Most scenes with many lamps have point lamps or spots, and reflect.
+    {Feature::LightClusters, RuleKind::Add, Feature::Punctual | Feature::Specular},
+    {Feature::LightClusters, RuleKind::Add, Feature::ShadowEvsm, Feature::ShadowEsm},
+    {Feature::LightClusters, RuleKind::Add, Feature::ShadowPcf, Feature::ShadowEsm, depth_maps},
+    // Also without lamps, the way of the light behind depends on normals and on the reflectance.
+    {Feature::Transmission, RuleKind::Add, Feature::Light | Feature::Specular},
+    // Microfacets that reflect light once or several times are those of specular reflection.
+    {Feature::Multiscatter, RuleKind::Need, Feature::Specular},
+    {Feature::Transmission | Feature::Multiscatter, RuleKind::Add, Feature::ShadowPcf, depth_maps},
+    // Most scenes that have the first need the last together.
+    {often_together, RuleKind::Add, Feature::Punctual | Feature::LampShape, Feature::Punctual | Feature::LampShape},
+    {often_together, RuleKind::Add, Feature::ShadowEvsm, Feature::ShadowEsm},
+    {lit_features, RuleKind::All, Feature::Light},
+}};
+
+/** Whether \a rule says something about \a features. */
+constexpr bool applies(const FeatureRule &rule, Feature features)
+{
+  return has(features, rule.when) && (rule.with == Feature::None || has(features, rule.with)) &&
+         (rule.with_too == Feature::None || has(features, rule.with_too));
+}
+
 /** Whether a scene can need \a features, and no smaller mask gives the same program. */
 bool is_possible(Feature features, const ShaderDeclaration &declaration)
 {
-  // Variants for full materials always read the base colour texture. In programs that only test alpha, a full
-  // material makes a difference only with an alpha mask.
-  if (has(features, Feature::FullMaterial) &&
-      (has(features, Feature::BaseColorTexture) ||
-       (has(declaration.features, Feature::AlphaMask) && !has(features, Feature::AlphaMask)))) {
-    return false;
-  }
-  // Blended casters read the same inputs as masks.
-  if (has(features, Feature::OpacityThreshold) && (features & alpha_features) != alpha_features) {
-    return false;
-  }
-  if (!has(features, Feature::Light)) {
-    return !has(features, light_features | Feature::Layers | Feature::Transmission);
-  }
-  // Layers lie over full materials, and reflect.
-  if (has(features, Feature::Layers) && (!has(features, Feature::FullMaterial) || !has(features, Feature::Specular))) {
-    return false;
-  }
-  // Transmission is one class of materials with layers.
-  if (has(features, Feature::Transmission) && !has(features, Feature::Layers)) {
-    return false;
-  }
-  // Most scenes with many lamps have point lamps or spots, and reflect. \see with_variant
-  if (has(features, Feature::LightClusters) &&
-      (!has(features, Feature::Punctual) || !has(features, Feature::Specular) ||
-       has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm) ||
-       (has(features, Feature::ShadowEsm) &&
-        has(features, Feature::ShadowCube | Feature::ShadowMap) != has(features, Feature::ShadowPcf)))) {
-    return false;
-  }
-  // Microfacets that reflect light once or several times are those of specular reflection.
-  if (has(features, Feature::Multiscatter) && !has(features, Feature::Specular)) {
-    return false;
-  }
-  // With transmission or multiple scattering, maps and cubes imply their filter, which reduces the number of variants.
-  // \see with_variant
-  if (has(features, Feature::Transmission | Feature::Multiscatter) &&
-      has(features, Feature::ShadowCube | Feature::ShadowMap) != has(features, Feature::ShadowPcf)) {
-    return false;
-  }
-  // With a world, with layers or with multiple scattering, Punctual implies LampShape and ShadowEsm implies ShadowEvsm,
-  // and vice versa. Most scenes need these features together, and the rule reduces the number of variants.
-  // \see with_variant
-  if (has(features, Feature::World | Feature::Layers | Feature::Multiscatter) &&
-      (has(features, Feature::Punctual) != has(features, Feature::LampShape) ||
-       has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm))) {
-    return false;
-  }
-  // Cubes and exponential maps exist for point, spot and area lamps only. Percentage-closer filtering reads a cube or a
-  // planar map.
-  return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
-         (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf)) &&
-         (has(features, Feature::ShadowEsm) || !has(features, Feature::ShadowEvsm));
+  return std::ranges::all_of(feature_rules, [&](const FeatureRule &rule) {
+    const Feature then = rule.then & declaration.features;
+    const Feature held = rule.then & features;
+    return !applies(rule, features) || (rule.kind == RuleKind::No    ? held == Feature::None
+                                        : rule.kind == RuleKind::Any ? held != Feature::None
+                                                                     : held == then);
+  });
 }
 
 }  // namespace
@@ -187,34 +207,20 @@ std::span<const ShaderDeclaration> shader_declarations()
 
 Feature with_variant(Feature features)
 {
-  if (has(features, Feature::LightClusters)) {
-    features = features | Feature::Punctual | Feature::Specular;
-    if (has(features, Feature::ShadowEsm)) {
-      const bool has_depths = has(features, Feature::ShadowCube | Feature::ShadowMap);
-      features = features | Feature::ShadowEvsm | (has_depths ? Feature::ShadowPcf : Feature::None);
+  for (const FeatureRule &rule : feature_rules) {
+    if (rule.kind == RuleKind::Add && applies(rule, features)) {
+      features = features | rule.then;
+    }
+    if (rule.kind == RuleKind::Need && applies(rule, features) && !has(features, rule.then)) {
+      features = without(features, rule.when);
     }
   }
-  if (has(features, Feature::Transmission)) {
-    // Also without lamps, the way of the light behind depends on normals and on the reflectance.
-    features = features | Feature::Light | Feature::Specular;
-  }
-  if (!has(features, Feature::Specular)) {
-    features = without(features, Feature::Multiscatter);
-  }
-  if (has(features, Feature::Transmission | Feature::Multiscatter) &&
-      has(features, Feature::ShadowCube | Feature::ShadowMap)) {
-    features = features | Feature::ShadowPcf;
-  }
-  if (!has(features, Feature::World | Feature::Layers | Feature::Multiscatter)) {
-    return features;
-  }
-  if (has(features, Feature::Punctual | Feature::LampShape)) {
-    features = features | Feature::Punctual | Feature::LampShape;
-  }
-  if (has(features, Feature::ShadowEsm)) {
-    features = features | Feature::ShadowEvsm;
-  }
   return features;
+}
+
+Feature variant_of(const ShaderDeclaration &declaration, Feature features)
+{
+  return (has(features, Feature::Light) ? features : without(features, lit_features)) & declaration.features;
 }
 
 std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)

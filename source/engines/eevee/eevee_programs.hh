@@ -79,6 +79,9 @@ struct FeatureDefine {
  */
 [[nodiscard]] Feature with_variant(Feature features);
 
+/** The mask of shader_variants that \a features, a result of with_variant, select for the program. */
+[[nodiscard]] Feature variant_of(const ShaderDeclaration &declaration, Feature features);
+
 /** The feature masks of \a declaration that a scene can need, without impossible masks and without duplicates. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadows/shadow_settings.hh"
+#include "eevee_shadow_settings.hh"
 
 #include "scene_property.hh"
 
@@ -13,8 +13,8 @@
 
 /**
  * The settings of the engine, with their rows (scene_property.hh). Checks of the engine, options, Python, the window,
- * reports and the documentation read the rows: add a setting and its row here, or of shadows in shadow_settings.hh, and
- * use it. A test refuses a member without a row, unless the test says why it needs none.
+ * reports and the documentation read the rows: add a setting and its row here, or of shadows in
+ * eevee_shadow_settings.hh, and use it. A test refuses a member without a row, unless the test says why it needs none.
  */
 namespace gnomon::eevee {
 

@@ -13,10 +13,6 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** Features that also affect programs without Feature::Light. */
-constexpr Feature unlit_features = Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial |
-                                   Feature::TargetDepth | Feature::OpacityThreshold;
-
 /** Adds the bindings that the code around a surface function reads. They are the same in all programs. */
 void add_function_bindings(gpu::ShaderInterface &interface)
 {
@@ -88,8 +84,7 @@ void ShaderCache::set_pcf(const PcfKernel &pcf)
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features, const FunctionText &function)
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
-  const Feature reachable = has(features, Feature::Light) ? features : features & unlit_features;
-  const Feature variant = reachable & declaration.features;
+  const Feature variant = variant_of(declaration, features);
   const Feature constant = has(variant, Feature::LampShape) ? features & Feature::LampHighlights : Feature::None;
   const Key key(id, variant | constant, function.key);
   const auto found = shaders_.find(key);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_surface_functions.hh"
 
+#include "render_materials.hh"
+
 #include <fmt/format.h>
 
 #include <map>

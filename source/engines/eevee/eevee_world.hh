@@ -6,6 +6,7 @@
 #include "draw_pass.hh"
 #include "eevee_world_shared.h"
 #include "render_scene.hh"
+#include "render_world.hh"
 
 /** Light of the scene's world, and the background of a picture. \see render_world.hh */
 namespace gnomon::eevee {

@@ -2,6 +2,7 @@
 #include "overlay.hh"
 
 #include "overlay_interfaces.hh"
+#include "overlay_programs.hh"
 
 #include "draw_view_shared.h"
 #include "gpu_read.hh"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "overlay_programs.hh"
-
 #include "draw_pass.hh"
 #include "draw_target.hh"
 #include "render_scene.hh"
@@ -17,6 +15,9 @@
 /** The additions of an editor to a picture: the object under a pixel, an outline of selected objects, and lines in the
  * scene. */
 namespace gnomon::overlay {
+
+enum class ShaderId;
+enum class Feature : std::uint32_t;
 
 /** The surface at the middle of a pixel. */
 struct Hit {

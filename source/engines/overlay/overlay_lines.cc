@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "overlay.hh"
+#include "overlay_programs.hh"
 
 #include "overlay_line_shared.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "unlit_programs.hh"
-
 #include "draw_engine.hh"
 #include "draw_viewport.hh"
 #include "render_scene.hh"
@@ -12,6 +10,9 @@
 #include <optional>
 
 namespace gnomon::unlit {
+
+enum class ShaderId;
+enum class Feature : std::uint32_t;
 
 struct Settings {
   /**
@@ -75,6 +76,7 @@ class Engine final : public draw::Engine {
 
   const gpu::Shader &shader(gpu::Device &device, ShaderId id, Feature features);
   void update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects);
+  void record_casters(gpu::Device &device, std::span<const draw::ObjectIndex> objects);
   void record(Data &data, gpu::Device &device);
   void record_surfaces(Data &data, gpu::Device &device);
   /** Orders the pass of blended surfaces for \a view, from back to front. */

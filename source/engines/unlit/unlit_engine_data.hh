@@ -2,6 +2,7 @@
 #pragma once
 
 #include "unlit_engine.hh"
+#include "unlit_programs.hh"
 
 #include "draw_target_pass.hh"
 #include "render_surfaces.hh"

@@ -4,6 +4,7 @@
 
 #include "eevee_sequence_shared.h"
 #include "render_blend_order.hh"
+#include "shadows/shadows.hh"
 
 #include <gtest/gtest.h>
 

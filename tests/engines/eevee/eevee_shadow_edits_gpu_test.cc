@@ -3,6 +3,7 @@
 #include "eevee_test_scene.hh"
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
+#include "shadows/shadows.hh"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 
 #include "eevee_test_scene.hh"
 #include "shadows/shadow_octahedral.hh"
+#include "shadows/shadows.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
 

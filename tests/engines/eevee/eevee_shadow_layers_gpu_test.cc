@@ -4,6 +4,7 @@
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
 #include "shadows/shadow_spot.hh"
+#include "shadows/shadows.hh"
 
 #include <gtest/gtest.h>
 

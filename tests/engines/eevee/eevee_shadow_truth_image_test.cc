@@ -5,6 +5,7 @@
 
 #include "reference_compare.hh"
 #include "shadows/shadow_spot.hh"
+#include "shadows/shadows.hh"
 
 #include <gtest/gtest.h>
 

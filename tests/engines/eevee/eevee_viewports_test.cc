@@ -2,6 +2,8 @@
 // Several viewports of one scene and engine: shared and separate resources.
 #include "eevee_test_scene.hh"
 
+#include "shadows/shadows.hh"
+
 #include <gtest/gtest.h>
 
 #include <array>

@@ -3,6 +3,7 @@
 
 #include "unlit_depth_camera.hh"
 #include "unlit_interfaces.hh"
+#include "unlit_programs.hh"
 
 #include "eevee_engine.hh"
 #include "engines/eevee/eevee_test_scene.hh"

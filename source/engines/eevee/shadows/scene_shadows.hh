@@ -2,8 +2,8 @@
 #pragma once
 
 #include "shadow_casters.hh"
+#include "shadow_octahedral_store.hh"
 #include "shadow_plan.hh"
-#include "shadow_settings.hh"
 #include "shadow_technique.hh"
 
 #include "draw_pass.hh"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "shadow_octahedral_store.hh"
 #include "shadow_technique.hh"
 
 namespace gnomon::eevee {

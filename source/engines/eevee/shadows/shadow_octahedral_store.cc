@@ -2,7 +2,6 @@
 #include "shadow_octahedral_store.hh"
 
 #include "eevee_lamps.hh"
-#include "shadow_settings.hh"
 
 #include <fmt/ranges.h>
 

@@ -5,66 +5,17 @@
 #include "shadow_layer_runs.hh"
 
 #include "eevee_shaders.hh"
+#include "eevee_shadow_settings.hh"
 
 #include "draw_pass.hh"
 #include "eevee_esm_shared.h"
-#include "scene_properties.hh"
 
 #include <optional>
 
 namespace gnomon::eevee {
 
-/** The content of a layer. */
-enum class EsmMethod {
-  /** The mean of exp(c·z) for distances z. Shadows are sharp, but light leaks behind casters over a length of 1 / c. */
-  Esm,
-  /**
-   * The mean and the variance of exp(c·z) in two channels: an exponential variance shadow map. It is more accurate for
-   * wide filters and needs twice the memory.
-   */
-  Evsm,
-};
-
-/** The filter of a layer. All filters average exp(exponent · distance), in log space to prevent an overflow. */
-enum class EsmKernel {
-  /** A cone of constant solid angle, sampled by 4 or 32 taps. The cost is proportional to taps × texels. */
-  Disk4,
-  Disk32,
-  /**
-   * For wide filters: a Gaussian with the variance of the disk, along rows and then along columns. Its shape follows
-   * the texels of the map, so that its angle varies between 0.88 and 1.23 of the disk's angle.
-   */
-  Separable,
-};
-
-using scene::EsmFormat;
-
 /** Maximum error of visibilities by 16-bit rounding. OctahedralStore::limits reports larger errors. */
 inline constexpr float esm_half_error_max = 0.02F;
-
-/** Settings of one lamp's exponential shadow map; names, units and limits are in shadow_settings.hh. */
-struct EsmSettings {
-  EsmMethod method = EsmMethod::Esm;
-  /** Exponent, 1/m. Default: esm_exponent. */
-  std::optional<float> exponent{};
-  /** Factor of shared::esm_bias. */
-  float bias = 1.0F;
-  /** Half the opening angle of the filter cone, radians. Default: esm_filter_angle. */
-  std::optional<float> filter_angle{};
-  /** Edge of the map without its border, texels. */
-  int size_px = 512;
-  /**
-   * Format of EsmMethod::Esm. EsmMethod::Evsm always has 32 bits. Default: Half if its rounding changes visibilities by
-   * at most esm_half_error_max, otherwise Float.
-   */
-  std::optional<EsmFormat> format{};
-  /** With the default filter angle, Disk4 has the quality of Disk32 in a quarter of the time. */
-  EsmKernel kernel = EsmKernel::Disk4;
-
-  /** All but the method. \see shadow_settings.hh */
-  template <typename Visit>
-  static constexpr void for_each_property(Visit &&visit);
-};
 
 /**
  * Default of EsmSettings::filter_angle, radians: half the mean angle of a texel, so that the cone has the diameter of a

@@ -5,6 +5,7 @@
 
 #include "eevee_lamp_points.hh"
 
+#include "eevee_esm_shared.h"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
 

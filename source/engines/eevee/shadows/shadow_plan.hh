@@ -2,9 +2,9 @@
 #pragma once
 
 #include "shadow_layer_runs.hh"
-#include "shadow_settings.hh"
 
 #include "eevee_lamps.hh"
+#include "eevee_shadow_settings.hh"
 #include "gpu_device.hh"
 
 #include <array>

@@ -4,6 +4,8 @@
 #include "shadow_casters.hh"
 #include "shadow_crop.hh"
 
+#include "eevee_shadow_settings.hh"
+
 #include "draw_view.hh"
 #include "scene.hh"
 
@@ -16,37 +18,13 @@
 
 namespace gnomon::eevee {
 
-/** Maximum number of cascades of a sun. */
-inline constexpr int cascade_count_max = 4;
-
 /**
  * Edge of the texels, in pixels, for which cascades around visible surfaces suffice. Larger texels need one more
  * cascade. \see SunSlices::error
  */
 inline constexpr double texel_in_pixels_max = 0.2;
-/** Maps whose texels would be smaller are made smaller. */
-inline constexpr double texel_in_pixels = 0.125;
 /** Sizes of maps change by powers of this factor. */
 inline constexpr double resize_step = 1.189207115;
-
-/** The distribution of a sun's cascades over the visible range. */
-struct CascadeSettings {
-  /**
-   * Number of cascades, 1 to cascade_count_max. 0: the smallest number for which texels are no larger than pixels, or
-   * texel_in_pixels_max if they are fitted to depths; at most cascade_count_max.
-   */
-  int count = 0;
-  /** Blend of uniform splits (0) and logarithmic splits (1) of the distance. \see cascade_splits */
-  float lambda = 0.8F;
-  /**
-   * Whether cascades that are fitted to depths (ShadowSettings::is_fitted_to_depth) have maps of other sizes than asked
-   * for: smaller where texels would be smaller than texel_in_pixels, and larger by resize_step where the largest number
-   * of cascades has texels larger than texel_in_pixels_enlarged. Not for lamps with a size of their own.
-   */
-  bool can_resize = false;
-  /** Edge of the texels, in pixels, above which can_resize makes maps larger. At least texel_in_pixels. */
-  double texel_in_pixels_enlarged = texel_in_pixels;
-};
 
 /** The view of one cascade, and the box that it covers. */
 struct SunFit {

@@ -7,6 +7,8 @@
 #include "shadow_plan.hh"
 #include "shadow_sun_fit.hh"
 
+#include "eevee_frame_tree.hh"
+
 #include "eevee_depth_shared.h"
 #include "eevee_shadow_shared.h"
 
@@ -17,20 +19,10 @@
 
 namespace gnomon::eevee {
 
+class OctahedralStore;
+
 /** A set of layers of a lamp's shadow: bit i is set for layer i. */
 using LayerMask = std::uint32_t;
-
-/** Counters of submitted work since the creation of the shadows. */
-struct ShadowCounters {
-  /** Number of updates of a lamp in which at least one layer was drawn. */
-  std::uint64_t lamps_updated = 0;
-  /** Number of layers drawn: faces of cubes, maps of spots, cascades of suns. */
-  std::uint64_t faces_drawn = 0;
-  /** Number of layers of updated lamps that were not drawn, because they are up to date, empty or not needed. */
-  std::uint64_t faces_skipped = 0;
-  /** Number of caster instances drawn. A caster counts once for each layer that it touches. */
-  std::uint64_t caster_draws = 0;
-};
 
 /** Description of the layers of one light, for debugging views. */
 struct ShadowLayers {

@@ -1,16 +1,91 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadow_octahedral_store.hh"
-#include "shadow_sun_fit.hh"
+#include "eevee_features.hh"
 
-#include "scene.hh"
+#include "scene_properties.hh"
 
 #include <array>
+#include <cstddef>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 namespace gnomon::eevee {
+
+/** The content of a layer. */
+enum class EsmMethod {
+  /** The mean of exp(c·z) for distances z. Shadows are sharp, but light leaks behind casters over a length of 1 / c. */
+  Esm,
+  /**
+   * The mean and the variance of exp(c·z) in two channels: an exponential variance shadow map. It is more accurate for
+   * wide filters and needs twice the memory.
+   */
+  Evsm,
+};
+
+/** The filter of a layer. All filters average exp(exponent · distance), in log space to prevent an overflow. */
+enum class EsmKernel {
+  /** A cone of constant solid angle, sampled by 4 or 32 taps. The cost is proportional to taps × texels. */
+  Disk4,
+  Disk32,
+  /**
+   * For wide filters: a Gaussian with the variance of the disk, along rows and then along columns. Its shape follows
+   * the texels of the map, so that its angle varies between 0.88 and 1.23 of the disk's angle.
+   */
+  Separable,
+};
+
+using scene::EsmFormat;
+
+/** Settings of one lamp's exponential shadow map; names, units and limits are in the rows below. */
+struct EsmSettings {
+  EsmMethod method = EsmMethod::Esm;
+  /** Exponent, 1/m. Default: esm_exponent. */
+  std::optional<float> exponent{};
+  /** Factor of shared::esm_bias. */
+  float bias = 1.0F;
+  /** Half the opening angle of the filter cone, radians. Default: esm_filter_angle. */
+  std::optional<float> filter_angle{};
+  /** Edge of the map without its border, texels. */
+  int size_px = 512;
+  /**
+   * Format of EsmMethod::Esm. EsmMethod::Evsm always has 32 bits. Default: Half if its rounding changes visibilities by
+   * at most esm_half_error_max, otherwise Float.
+   */
+  std::optional<EsmFormat> format{};
+  /** With the default filter angle, Disk4 has the quality of Disk32 in a quarter of the time. */
+  EsmKernel kernel = EsmKernel::Disk4;
+
+  /** All but the method. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
+};
+
+/** Maximum number of cascades of a sun. */
+inline constexpr int cascade_count_max = 4;
+
+/** Maps whose texels would be smaller are made smaller. */
+inline constexpr double texel_in_pixels = 0.125;
+
+/** The distribution of a sun's cascades over the visible range. */
+struct CascadeSettings {
+  /**
+   * Number of cascades, 1 to cascade_count_max. 0: the smallest number for which texels are no larger than pixels, or
+   * texel_in_pixels_max if they are fitted to depths; at most cascade_count_max.
+   */
+  int count = 0;
+  /** Blend of uniform splits (0) and logarithmic splits (1) of the distance. \see cascade_splits */
+  float lambda = 0.8F;
+  /**
+   * Whether cascades that are fitted to depths (ShadowSettings::is_fitted_to_depth) have maps of other sizes than asked
+   * for: smaller where texels would be smaller than texel_in_pixels, and larger by resize_step where the largest number
+   * of cascades has texels larger than texel_in_pixels_enlarged. Not for lamps with a size of their own.
+   */
+  bool can_resize = false;
+  /** Edge of the texels, in pixels, above which can_resize makes maps larger. At least texel_in_pixels. */
+  double texel_in_pixels_enlarged = texel_in_pixels;
+};
 
 /** The method for drawing the layers of a lamp. All methods give the same texels. */
 enum class LayerPass {
