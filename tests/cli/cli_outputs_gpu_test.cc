@@ -3,6 +3,8 @@
 #include "cli_picture.hh"
 #include "cli_process.hh"
 
+#include <nlohmann/json.hpp>
+
 #include <sys/stat.h>
 #include <array>
 #include <cstring>
@@ -91,6 +93,24 @@ TEST_F(OutputsTest, OutputsGoThroughLinksToPipesAndDevices)
     EXPECT_NE(full.err.find(name + ": cannot be written: No space left on device"), std::string::npos) << full.err;
     fs::remove(folder / name);
     fs::remove(folder / "target");
+  }
+}
+
+TEST_F(OutputsTest, TextIsNotMixedWithAnOutputOnStandardOutput)
+{
+  for (const auto &[command, name] : commands()) {
+    fs::create_symlink("/dev/stdout", folder / name);
+    const Finished finished = run(named(command, name) + " | cat > piped; true");
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    const std::string piped = read("piped");
+    fs::remove(folder / name);
+    if (name == "o.json" || name == "o.trace") {
+      EXPECT_TRUE(nlohmann::json::accept(piped)) << command << ": " << piped.substr(0, 200);
+      continue;
+    }
+    ASSERT_EQ(run(named(command, name)).status, 0) << command;
+    EXPECT_TRUE(piped == read(name)) << command << ": " << piped.size();
+    fs::remove(folder / name);
   }
 }
 
