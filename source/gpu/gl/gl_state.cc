@@ -265,7 +265,8 @@ void HostState::keep_polygon_offset()
   if (!is_host_ || polygon_offset_) {
     return;
   }
-  PolygonOffset &saved = polygon_offset_.emplace();
+  // Without an argument, clang 14 does not compile it: the defaults of members are not known yet within the class.
+  PolygonOffset &saved = polygon_offset_.emplace(PolygonOffset());
   glGetFloatv(GL_POLYGON_OFFSET_FACTOR, &saved.factor);
   glGetFloatv(GL_POLYGON_OFFSET_UNITS, &saved.units);
   constexpr int version_with_clamp = 46;
