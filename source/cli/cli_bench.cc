@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
+#include "cli_roles.hh"
 
 #include "cli_bench.hh"
 #include "cli_device.hh"
@@ -247,7 +248,7 @@ void bench_start(const BenchOptions &options)
 /** Before minutes of measuring. \throws output::Error where --json cannot be written, or would replace a scene */
 void check_files(const BenchOptions &options)
 {
-  output::Roles roles;
+  Roles roles;
   roles.add_input(options.scene, "the scene");
   for (const std::string &scene : options.scenes) {
     roles.add_input(scene, "the scene");

@@ -3,9 +3,9 @@
 
 #include "cli_output.hh"
 #include "cli_picture.hh"
+#include "cli_roles.hh"
 
 #include "measure_image_error.hh"
-#include "output_roles.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -72,7 +72,7 @@ void write_errors(const CompareOptions &options, const measure::ImageError &erro
 
 Status compare(const CompareOptions &options)
 {
-  output::Roles roles;
+  Roles roles;
   roles.add_input(options.picture, "the picture");
   roles.add_input(options.reference, "the reference");
   roles.add_output(options.json, "--json");

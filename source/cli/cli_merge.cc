@@ -2,9 +2,8 @@
 #include "cli.hh"
 
 #include "cli_exr_part.hh"
+#include "cli_roles.hh"
 #include "cli_work_plan.hh"
-
-#include "output_roles.hh"
 
 #include <fmt/format.h>
 
@@ -250,7 +249,7 @@ Status merge(const MergeOptions &options)
   if (std::filesystem::path(options.output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
   }
-  output::Roles roles;
+  Roles roles;
   for (const std::string &part : options.parts) {
     roles.add_input(part, "the part");
   }

@@ -6,9 +6,8 @@
 #include "cli_origin.hh"
 #include "cli_render.hh"
 #include "cli_render_options.hh"
+#include "cli_roles.hh"
 #include "cli_work_plan.hh"
-
-#include "output_roles.hh"
 
 #include <fmt/format.h>
 
@@ -78,7 +77,7 @@ Status plan(const PlanOptions &options, const CLI::App &command)
   if (!options.render.has_picture()) {
     throw UsageError("plan: the parts draw pictures, and --backend null draws none");
   }
-  output::Roles roles;
+  Roles roles;
   for (const std::string &scene : options.render.scenes) {
     roles.add_input(scene, "the scene");
   }

@@ -12,6 +12,7 @@
 #include "cli_render_options.hh"
 #include "cli_render_output.hh"
 #include "cli_render_report.hh"
+#include "cli_roles.hh"
 #include "cli_stop.hh"
 #include "cli_time.hh"
 #include "cli_trace.hh"
@@ -20,7 +21,6 @@
 #include "eevee_scene_renderer.hh"
 #include "eevee_world.hh"
 #include "gpu_read.hh"
-#include "output_roles.hh"
 #include "trace.hh"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /** Adds the outputs, and the inputs that are known before the scene is read. */
-void add_files(const RenderOptions &options, const FrameSequence &frames, output::Roles &roles)
+void add_files(const RenderOptions &options, const FrameSequence &frames, Roles &roles)
 {
   roles.add_input(options.scene, "the scene");
   if (!options.choice.report_folder.empty()) {
@@ -272,7 +272,7 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
-Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, output::Roles &roles,
+Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
   const glm::ivec2 size_px = options.size_px();
@@ -383,7 +383,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
   const Clock::time_point start = Clock::now();
   const StopRequests stops(options.stop_seconds);
   const std::vector<RenderOptions> scenes = options_of_scenes(options);
-  output::Roles roles;
+  Roles roles;
   roles.add_output(options.trace, "--trace");
   for (const RenderOptions &one : scenes) {
     add_files(one, FrameSequence(one.frames, one.output), roles);

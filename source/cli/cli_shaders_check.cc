@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shaders.hh"
 
+#include "cli_roles.hh"
 #include "cli_shader_jobs.hh"
 #include "cli_shader_manifest.hh"
 #include "cli_shader_programs.hh"
 
 #include "eevee_programs.hh"
-#include "output_roles.hh"
 #include "scene_types.hh"
 
 #include <algorithm>
@@ -277,7 +277,7 @@ fs::path output_path(const CheckArguments &arguments, const std::string &file)
 /** \throws output::Conflict if an output would replace an input or another output */
 void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
 {
-  output::Roles roles;
+  Roles roles;
   roles.add_input(arguments.manifest, "--manifest");
   for (const ShaderManifest::Entry &entry : entries) {
     for (const shader_check::Program::File &file : entry.program.files) {

@@ -4,10 +4,10 @@
 #include "cli_device.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
+#include "cli_roles.hh"
 
 #include "measure_page.hh"
 #include "measure_report.hh"
-#include "output_roles.hh"
 #include "verify_stability.hh"
 
 #include <fmt/format.h>
@@ -353,7 +353,7 @@ Status stability(const StabilityOptions &options)
   const std::string driver = device ? device->description() : "no device";
   fs::create_directories(options.folder);
   const fs::path folder(options.folder);
-  output::Roles roles;
+  Roles roles;
   for (const char *name : {"stability.csv", "stability.json", "index.html"}) {
     roles.add_output(folder / name, "-o");
   }

@@ -20,34 +20,6 @@ namespace {
 
 }  // namespace
 
-std::vector<ScriptLine> parse_script(std::string_view text)
-{
-  std::vector<ScriptLine> lines;
-  std::istringstream input{std::string(text)};
-  std::string line;
-  for (int number = 1; std::getline(input, line); number++) {
-    std::vector<std::string> words;
-    for (std::size_t i = 0; i < line.size() && line[i] != '#';) {
-      if (line[i] == ' ' || line[i] == '\t' || line[i] == '\r') {
-        i++;
-        continue;
-      }
-      const bool is_quoted = line[i] == '"';
-      const std::size_t first = is_quoted ? i + 1 : i;
-      const std::size_t end = line.find_first_of(is_quoted ? "\"" : " \t\r", first);
-      if (is_quoted && end == std::string::npos) {
-        throw std::runtime_error(fmt::format("{}: a quote is not closed", number));
-      }
-      words.push_back(line.substr(first, end - first));
-      i = end == std::string::npos ? line.size() : end + 1;
-    }
-    if (!words.empty()) {
-      lines.push_back({number, std::move(words)});
-    }
-  }
-  return lines;
-}
-
 Script::Script(const std::filesystem::path &path) : path_(path)
 {
   std::ifstream file(path);

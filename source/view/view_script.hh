@@ -2,25 +2,13 @@
 #pragma once
 
 #include "view_app.hh"
+#include "view_words.hh"
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace gnomon::view {
-
-/** A line of a script: a command and its arguments. */
-struct ScriptLine {
-  int number = 0;
-  std::vector<std::string> words;
-};
-
-/**
- * Parse the lines that are not empty. Spaces separate words; a word with spaces stands in double quotes; # starts a
- * comment. \throws std::runtime_error, which names the line, if a quote is not closed
- */
-[[nodiscard]] std::vector<ScriptLine> parse_script(std::string_view text);
 
 /** A sequence of commands that operates the window. doc/view.md lists the commands. */
 class Script {

@@ -3,8 +3,37 @@
 
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 namespace gnomon::view {
+
+std::vector<ScriptLine> parse_script(std::string_view text)
+{
+  std::vector<ScriptLine> lines;
+  std::istringstream input{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(input, line); number++) {
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < line.size() && line[i] != '#';) {
+      if (line[i] == ' ' || line[i] == '\t' || line[i] == '\r') {
+        i++;
+        continue;
+      }
+      const bool is_quoted = line[i] == '"';
+      const std::size_t first = is_quoted ? i + 1 : i;
+      const std::size_t end = line.find_first_of(is_quoted ? "\"" : " \t\r", first);
+      if (is_quoted && end == std::string::npos) {
+        throw std::runtime_error(fmt::format("{}: a quote is not closed", number));
+      }
+      words.push_back(line.substr(first, end - first));
+      i = end == std::string::npos ? line.size() : end + 1;
+    }
+    if (!words.empty()) {
+      lines.push_back({number, std::move(words)});
+    }
+  }
+  return lines;
+}
 
 double number(const std::string &word)
 {
@@ -20,7 +49,8 @@ double number(const std::string &word)
 int integer(const std::string &word, int min, int max)
 {
   const double value = number(word);
-  if (value != double(int(value)) || value < min || value > max) {
+  // A value out of the range of int must not be converted.
+  if (value < min || value > max || value != double(int(value))) {
     throw std::runtime_error(fmt::format("'{}' is not an integer from {} to {}", word, min, max));
   }
   return int(value);

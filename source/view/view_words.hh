@@ -9,9 +9,23 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
-/** Parsers for arguments of script commands. All throw std::runtime_error, which names the invalid word. */
+/** Parsers of scripts and of their arguments. They throw std::runtime_error, which names the line or the invalid word.
+ */
 namespace gnomon::view {
+
+/** A line of a script: a command and its arguments. */
+struct ScriptLine {
+  int number = 0;
+  std::vector<std::string> words;
+};
+
+/**
+ * Parse the lines that are not empty. Spaces separate words; a word with spaces stands in double quotes; # starts a
+ * comment. \throws std::runtime_error if a quote is not closed
+ */
+[[nodiscard]] std::vector<ScriptLine> parse_script(std::string_view text);
 
 /** A finite number with an absolute value of at most 1e12. */
 [[nodiscard]] double number(const std::string &word);

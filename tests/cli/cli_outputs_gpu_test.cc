@@ -2,10 +2,16 @@
 #include "cli_output.hh"
 #include "cli_picture.hh"
 #include "cli_process.hh"
+#include "output_file.hh"
+
+#include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
 #include <array>
+#include <csignal>
 #include <cstring>
+#include <map>
+#include <sstream>
 
 namespace gnomon {
 namespace {
@@ -91,6 +97,24 @@ TEST_F(OutputsTest, OutputsGoThroughLinksToPipesAndDevices)
     EXPECT_NE(full.err.find(name + ": cannot be written: No space left on device"), std::string::npos) << full.err;
     fs::remove(folder / name);
     fs::remove(folder / "target");
+  }
+}
+
+TEST_F(OutputsTest, TextIsNotMixedWithAnOutputOnStandardOutput)
+{
+  for (const auto &[command, name] : commands()) {
+    fs::create_symlink("/dev/stdout", folder / name);
+    const Finished finished = run(named(command, name) + " | cat > piped; true");
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    const std::string piped = read("piped");
+    fs::remove(folder / name);
+    if (name == "o.json" || name == "o.trace") {
+      EXPECT_TRUE(nlohmann::json::accept(piped)) << command << ": " << piped.substr(0, 200);
+      continue;
+    }
+    ASSERT_EQ(run(named(command, name)).status, 0) << command;
+    EXPECT_TRUE(piped == read(name)) << command << ": " << piped.size();
+    fs::remove(folder / name);
   }
 }
 
@@ -196,6 +220,140 @@ TEST_F(OutputsTest, PermissionsOfAnExistingFileStay)
   fs::permissions(folder / "o.exr", fs::perms(0604));
   ASSERT_EQ(run("render s.glb -o o.exr --size 16x16 --samples 1").status, 0);
   EXPECT_EQ(unsigned(fs::status(folder / "o.exr").permissions()), 0604U);
+}
+
+class SlowOutputsTest : public OutputsTest {
+ protected:
+  /** Runs the program under faults of the system: \a variables of faults_module.cc */
+  Finished run_faulty(const std::string &command, const std::string &variables)
+  {
+    return run(command, "/usr/bin/env' LD_PRELOAD='" GNOMON_FAULTS "' " + variables + " '" GNOMON_PROGRAM);
+  }
+  [[nodiscard]] bool is_whole(const std::string &name, const std::string &right) const
+  {
+    // Reports have times.
+    return right.empty() ? nlohmann::json::accept(read(name)) : read(name) == right;
+  }
+  void fail_each_call(bool is_killed);
+};
+
+/** Each call that writes an output fails once. The last run of each call has no failure, and is the next picture. */
+void SlowOutputsTest::fail_each_call(bool is_killed)
+{
+  for (const auto &[command, name] : commands()) {
+    ASSERT_EQ(run(named(command, name)).status, 0) << command;
+    const std::string right = name == "o.json" || name == "o.trace" ? "" : read(name);
+    ASSERT_TRUE(is_whole(name, right));
+    const std::size_t count = file_count();
+    for (const std::string call : {"fwrite", "fflush", "fsync", "linkat", "rename"}) {
+      int failure_count = 0;
+      // A header of EXR is written by some hundred calls.
+      for (int at = 1;; at = call == "fwrite" ? 4 * at : at + 1) {
+        write(name, "old");
+        const std::string fault = call + ':' + std::to_string(at);
+        SCOPED_TRACE(command + ' ' + fault);
+        const Finished finished =
+            run_faulty(named(command, name), "GNOMON_FAULT=" + fault + (is_killed ? " GNOMON_FAULT_KILLS=1" : ""));
+        if (finished.status == 0) {
+          EXPECT_TRUE(is_whole(name, right));
+          break;
+        }
+        failure_count++;
+        // After the rename, the folder is flushed.
+        EXPECT_TRUE(read(name) == "old" || (call == "fsync" && is_whole(name, right)));
+        EXPECT_EQ(finished.status, is_killed ? -SIGKILL : 5);
+        const std::string message = "gnomon: " + name + ": cannot be written: No space left on device";
+        EXPECT_EQ(finished.err.find(message) != std::string::npos, !is_killed) << finished.err;
+        // A process that is killed between naming its file and renaming it leaves that name.
+        EXPECT_EQ(file_count(), count + (is_killed && call == "rename" ? 1 : 0));
+        output::remove_unfinished(folder, {name});
+        EXPECT_EQ(file_count(), count);
+      }
+      EXPECT_GT(failure_count, 0) << command << ' ' << call;
+    }
+    fs::remove(folder / name);
+  }
+}
+
+TEST_F(SlowOutputsTest, AreOldOrWholeWhicheverWriteFails)
+{
+  fail_each_call(false);
+}
+
+TEST_F(SlowOutputsTest, AreOldOrWholeWhereverTheProcessIsKilled)
+{
+  fail_each_call(true);
+}
+
+/** What surrounds a process changes no picture and gives no message. */
+TEST_F(SlowOutputsTest, AreThoseOfAnyHomeClockAndExtensions)
+{
+  const std::string command = "render '" GNOMON_SOURCE "/examples/scenes/plaza.glb' --size 48x27 --samples 2 ";
+  const std::string timed = "--stop-after 1000 --time-limit 1000 --repeat 2 --json o.json";
+  std::map<std::string, std::string> right;
+  const auto expect_right = [&](const std::string &variables, const std::string &options = "") {
+    if (!right.contains(options)) {
+      EXPECT_EQ(run(command + "-o o.exr " + options).status, 0);
+      right[options] = read("o.exr");
+    }
+    fs::remove(folder / "o.exr");
+    const Finished finished = run_faulty(command + "-o o.exr " + options, variables);
+    EXPECT_EQ(finished.status, 0) << variables;
+    // Mesa may say that it has no cache.
+    EXPECT_EQ(finished.err.find("gnomon"), std::string::npos) << variables << ": " << finished.err;
+    EXPECT_TRUE(read("o.exr") == right[options]) << variables;
+  };
+  // Nobody can create a file there, not even root.
+  expect_right("XDG_CACHE_HOME= HOME=/proc");
+  expect_right("XDG_CACHE_HOME= HOME=/sys");
+  expect_right("XDG_CACHE_HOME= HOME=");
+  expect_right("GNOMON_FAULT_CLOCK=1", timed);
+  const nlohmann::json report = nlohmann::json::parse(read("o.json"));
+  for (const nlohmann::json &seconds : report["frame_seconds"]) {
+    EXPECT_GT(seconds, 0.0);
+    EXPECT_LT(seconds, 1000.0);
+  }
+  // An older driver, which has an extension or not. Drivers other than Mesa's ignore the variables.
+  std::string all;
+  std::istringstream names(GNOMON_OPTIONAL_EXTENSIONS);
+  for (std::string name; names >> name;) {
+    all += "-" + name + ' ';
+    expect_right("MESA_GL_VERSION_OVERRIDE=4.5 MESA_EXTENSION_OVERRIDE=-" + name, "--backend gl");
+  }
+  ASSERT_FALSE(all.empty());
+  expect_right("MESA_GL_VERSION_OVERRIDE=4.5 MESA_EXTENSION_OVERRIDE='" + all + "'", "--backend gl");
+}
+
+TEST_F(SlowOutputsTest, OfProcessesThatShareTheirCachesAreThoseOfEachAlone)
+{
+  const std::string command = "render s.glb --size 16x16 --samples 1 -o ";
+  ASSERT_EQ(run(command + "o.exr").status, 0);
+  const std::string right = read("o.exr");
+  const std::string check = "shaders check --program eevee_depth --cache checks";
+  const std::string together = "export XDG_CACHE_HOME=$PWD/cache; for i in 1 2 3 4; do \"$0\" " + command +
+                               "$i.exr & \"$0\" " + check + " & done; wait";
+  for (int round = 0; round < 3; round++) {
+    const Finished finished = run("", "/bin/sh' -c '" + together + "' '" GNOMON_PROGRAM);
+    EXPECT_EQ(finished.err, "");
+    for (const char *name : {"1.exr", "2.exr", "3.exr", "4.exr"}) {
+      EXPECT_TRUE(read(name) == right) << name << " in round " << round;
+      fs::remove(folder / name);
+    }
+    const std::string clean = "0 errors, 0 warnings";
+    for (std::size_t i = 0, at = 0; i < 4; i++, at += clean.size()) {
+      at = finished.out.find(clean, at);
+      ASSERT_NE(at, std::string::npos) << finished.out;
+    }
+    // The first round fills the caches, the next one finds files that are cut off.
+    for (const char *cache : {"cache", "checks"}) {
+      ASSERT_TRUE(fs::exists(folder / cache));
+      for (const auto &entry : fs::recursive_directory_iterator(folder / cache)) {
+        if (round == 0 && entry.is_regular_file()) {
+          fs::resize_file(entry.path(), entry.file_size() / 2);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

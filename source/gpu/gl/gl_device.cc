@@ -37,9 +37,9 @@ Limits query_limits()
   // They are a uniform block.
   limits.push_constant_bytes_max = limits.uniform_block_bytes_max;
   limits.color_attachment_max = std::min(get(GL_MAX_COLOR_ATTACHMENTS), get(GL_MAX_DRAW_BUFFERS));
-  // OpenGL 4.6 has it; before, only extensions have.
-  if (epoxy_gl_version() >= 46 || epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
-      epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+  // OpenGL 4.6 has it; before, only extensions have. Drivers with the later GL_ARB_texture_filter_anisotropic have this
+  // one, too, and Mesa accepts the query with this one only.
+  if (epoxy_gl_version() >= 46 || epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
     limits.anisotropy_max = std::max(get(GL_MAX_TEXTURE_MAX_ANISOTROPY), 1);
   }
   else {

@@ -265,14 +265,14 @@ void HostState::keep_polygon_offset()
   if (!is_host_ || polygon_offset_) {
     return;
   }
-  PolygonOffset saved;
+  // Without an argument, clang 14 does not compile it: the defaults of members are not known yet within the class.
+  PolygonOffset &saved = polygon_offset_.emplace(PolygonOffset());
   glGetFloatv(GL_POLYGON_OFFSET_FACTOR, &saved.factor);
   glGetFloatv(GL_POLYGON_OFFSET_UNITS, &saved.units);
   constexpr int version_with_clamp = 46;
   if (epoxy_gl_version() >= version_with_clamp || epoxy_has_gl_extension("GL_ARB_polygon_offset_clamp")) {
     glGetFloatv(GL_POLYGON_OFFSET_CLAMP, &saved.clamp);
   }
-  polygon_offset_ = saved;
 }
 
 void HostState::keep_color_masks(GLuint count)
