@@ -142,6 +142,16 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
   }
 }
 
+/** Prints those of \a texts that \a printed does not have. */
+void print_new_messages(std::string_view kind, const std::vector<std::string> &texts,
+                        const std::vector<std::string> &printed)
+{
+  std::vector<std::string> fresh;
+  std::ranges::copy_if(texts, std::back_inserter(fresh),
+                       [&](const std::string &text) { return std::ranges::find(printed, text) == printed.end(); });
+  print_messages(kind, fresh);
+}
+
 struct ImportedScene {
   scene::Scene scene;
   double seconds = 0.0;
@@ -344,8 +354,12 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   Progress progress(options.has_progress_lines, frames.count(), options.samples);
   const Status status =
       render_sequence({options, frames, stops, progress, result, content}, aov, scene, camera, renderer);
+  // Surface functions are compiled by the first picture.
+  eevee::Report drawn = inspection.report();
+  print_new_messages("warning", drawn.warnings, result.report.warnings);
+  print_new_messages("limit", drawn.limits, result.report.limits);
   if (aov.empty()) {
-    result.report = inspection.report();
+    result.report = std::move(drawn);
   }
   if (!options.has_picture()) {
     print_message("gnomon: the null backend draws nothing: no picture is written\n");
