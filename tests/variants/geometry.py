@@ -3,7 +3,8 @@
 
 Each scene is a quad that fills the picture, red on the left and green on the right, or mirrored. It differs in the mode and the
 indices of its primitive, in what opens it (morph targets, joints, sparse accessors, an animation), in its node (mirrored, instanced,
-below others), in its set of texture coordinates and their transform, in its visibility and in its files.
+below others), in its set of texture coordinates and their transform, in its light, in its visibility and
+in its files.
 """
 import math
 import struct
@@ -19,6 +20,8 @@ VALUES = {
     "node": ["plain", "mirrored", "matrix", "parent", "all axes", "instance", "far away"],
     "uv set": range(8),
     "transform": ["none", "offset", "scale", "rotation", "other set"],
+    "material": ["unlit", "unlit", "lit", "lit front", "lit back"],
+    "normals": [False, True],
     "seen": ["always", "visible", "animated", "hidden above"],
     "file": ["data URI", "buffer beside", "GLB", "GLB and buffer"],
 }
@@ -54,12 +57,24 @@ def scene_of(random, of):
         texture["extensions"] = {"KHR_texture_transform": transform}
     if of["transform"] == "other set":
         texture["texCoord"] = (uv_set + 1) % 8
-    material = gltf.material(pbrMetallicRoughness={"baseColorTexture": texture}, extensions={"KHR_materials_unlit": {}})
+    brightness = 1
+    if of["material"] == "unlit":
+        material = gltf.material(pbrMetallicRoughness={"baseColorTexture": texture}, extensions={"KHR_materials_unlit": {}})
+    else:
+        # A sun of 1 W/m2 towards -Z, on a surface that scatters it and has no highlight.
+        json["extensionsUsed"] += ["KHR_lights_punctual", "KHR_materials_specular"]
+        json["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 683}]}}
+        gltf.node(extensions={"KHR_lights_punctual": {"light": 0}})
+        material = gltf.material(pbrMetallicRoughness={"baseColorTexture": texture, "metallicFactor": 0},
+                                 extensions={"KHR_materials_specular": {"specularFactor": 0}})
+        brightness = 1 / math.pi
 
     primitive = {"attributes": {}, "mode": of["mode"], "material": material}
     if of["indices"]:
         primitive["indices"] = gltf.accessor([[i] for i in order], "SCALAR", of["indices"], COMPONENTS[of["indices"]])
     attributes = primitive["attributes"]
+    if of["normals"]:
+        attributes["NORMAL"] = vectors([[0, 0, 1]] * 4)
     for i in range(8):
         attributes[f"TEXCOORD_{i}"] = gltf.accessor(rows(UVS if i == uv_set else [[0.2, 0.2]] * 4), "VEC2")
     mesh = {"primitives": [primitive]}
@@ -137,7 +152,8 @@ def scene_of(random, of):
 
     if opened == "animated morph":
         animate({"node": index, "path": "weights"}, [[0], [1]], "SCALAR")
-    left, right = ((0, 1, 0, 1), (1, 0, 0, 1)) if is_swapped else ((1, 0, 0, 1), (0, 1, 0, 1))
+    red, green = (brightness, 0, 0, 1), (0, brightness, 0, 1)
+    left, right = (green, red) if is_swapped else (red, green)
     if of["seen"] == "visible":
         set_visible(index, True)
     elif of["seen"] == "hidden above":
@@ -158,7 +174,9 @@ def check(program, random, of):
     gltf, left, right = scene_of(random, of)
     path = gltf.write_form(f"{program.folder}/scene", of["file"])
     options = ["--frames", "1", "--fps", "1"] if "animations" in gltf.json else []
-    pixels = program.render(path, "--size", "8x8", "--samples", "1", "--world", "1,1,1", "--background", "none", *options)
+    if of["material"].startswith("lit "):
+        options += ["--casters", of["material"].split()[1]]
+    pixels = program.render(path, "--size", "8x8", "--samples", "1", "--world", "none", "--background", "none", *options)
     # Filters reach over the middle and the edges.
     for x, color in ((1, left), (6, right)):
         error = numpy.abs(pixels[1:7, x] - color).max()
