@@ -37,14 +37,18 @@ bool is_pixel_cut_out(float mask_cutoff)
   bool is_open = factor * textureLod(base_color_texture, surface_uv, 0.0).a < mask_cutoff;
   // x: the level that the sampler reads, which is 0 without mip levels. y: the level by size.
   vec2 lod = textureQueryLod(base_color_texture, surface_uv);
-  float level = lod.y + view.texture_lod_bias;
-  if (lod.x <= 0.0 || level <= 0.0 || factor < mask_cutoff) {
+  // Samples are spread by a filter that is wider than a pixel, so that a few of them fall on one side of a pixel. Shares are those of twice
+  // the distance between samples, and at most of a pixel.
+  float level = lod.y + min(view.texture_lod_bias + 1.0, 0.0);
+  // The image itself, of level 0, has colors of texels that are cut out.
+  float has_levels = clamp(4.0 * (lod.y + view.texture_lod_bias) - 3.0, 0.0, 1.0);
+  if (lod.x <= 0.0 || has_levels <= 0.0 || factor < mask_cutoff) {
     return is_open;
   }
   float share = textureLod(base_color_texture, surface_uv, max(level, 1.0)).a;
   float share_around = textureLod(base_color_texture, surface_uv, level + 2.0).a;
   float share_farther = textureLod(base_color_texture, surface_uv, level + 4.0).a;
   // The levels are rounded to 1/255.
-  float weight = min(level, 1.0) * clamp(2.0 - 64.0 * abs(share_around - share_farther), 0.0, 1.0);
+  float weight = has_levels * clamp(2.0 - 64.0 * abs(share_around - share_farther), 0.0, 1.0);
   return mix(is_open ? 0.0 : 1.0, share, weight) < mask_threshold();
 }
