@@ -127,10 +127,10 @@ def check(program, random, of):
     what = change
     if change == "setting":
         name = random.choice(sorted(draws))
-        values = {draws[name](random) for _ in range(50)} - {first.get(name)}
+        values = {draws[name](random) for _ in range(50)}
         # A value that is given may be the default.
-        second[name] = random.choice(sorted(values))
-        first.setdefault(name, random.choice(sorted(values - {second[name]})))
+        first.setdefault(name, random.choice(sorted(values)))
+        second[name] = random.choice(sorted(values - {first[name]}))
         what = f"--{name} {first[name]} and {second[name]}"
     elif change == "harmless":
         name = random.choice(sorted(HARMLESS))

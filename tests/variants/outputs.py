@@ -155,14 +155,12 @@ def check(program, random, of):
         def read_fifo():
             with open(fifo, "rb") as file:
                 read.append(file.read())
-        reader = threading.Thread(target=read_fifo)
+        reader = threading.Thread(target=read_fifo, daemon=True)
         reader.start()
     status, out, messages = program.run(*command_of(output, name))
     if "FIFO" in place:
-        if status != 0:
-            # So that the reader ends.
-            os.close(os.open(fifo, os.O_WRONLY | os.O_NONBLOCK))
-        reader.join()
+        reader.join(10)
+        expect(read, f"status {status}, and the reader of the pipe waits: {messages}")
         data = read[0]
     expect(status == (5 if place == "/dev/full" else 0), f"status {status}: {messages}")
     for at, to in links.items():
