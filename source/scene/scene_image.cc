@@ -283,9 +283,9 @@ static void fill_uncovered(Image &image, const std::vector<float> &parts)
 }
 
 /**
- * Sets the alphas of a reduced mask, whose texels are covered or not, and \a parts are not. Where the covered part of
- * the image would change, by texels or by a linear filter between them, texels have one of two alphas, so that the
- * filter shows that part.
+ * Sets the alphas of a reduced mask, whose texels are covered or not, and \a parts are not. They are the part, as far
+ * above the cutoff as a half. Where the covered part of the image would change, by texels or by a linear filter between
+ * them, texels have one of two alphas, so that the filter shows that part.
  */
 static void cover(Image &image, const std::vector<float> &parts, float cutoff)
 {
@@ -293,26 +293,20 @@ static void cover(Image &image, const std::vector<float> &parts, float cutoff)
   constexpr double change_max = 0.01;
   std::vector<bool> is_covered = covered_texels(parts, image.width, false);
   const double count = double(std::ranges::count(is_covered, true)) / double(parts.size());
-  if (std::abs(count - wanted) > change_max) {
+  const bool is_diffused = std::abs(count - wanted) > change_max;
+  if (is_diffused) {
     is_covered = covered_texels(parts, image.width, true);
   }
   const FilteredCover filtered(is_covered, image.width);
-  const bool keeps_alphas =
-      std::abs(count - wanted) <= change_max && std::abs(filtered.part(0.5F) - wanted) <= change_max;
-  // The cutoff lies at that part of the way from the low alpha to the high one.
-  const float at = keeps_alphas ? 0.5F : filtered.least_of(wanted);
+  const bool has_two_alphas = is_diffused || std::abs(filtered.part(0.5F) - wanted) > change_max;
+  // What lies at the cutoff.
+  const float at = has_two_alphas ? filtered.least_of(wanted) : 0.5F;
   const float range = std::min(cutoff / at, (1.0F - cutoff) / (1.0F - at));
   const auto least = std::uint8_t(std::clamp(std::ceil(255.0F * cutoff), 1.0F, 255.0F));
-  const std::uint8_t high = std::max(rounded(cutoff + (1.0F - at) * range), least);
-  const std::uint8_t low = std::min(rounded(cutoff - at * range), std::uint8_t(least - 1));
   for (std::size_t i = 0; i < parts.size(); i++) {
-    std::uint8_t &alpha = image.texels[4 * i + 3];
-    if (is_covered[i]) {
-      alpha = keeps_alphas ? std::max(alpha, least) : high;
-    }
-    else {
-      alpha = keeps_alphas ? std::min(alpha, std::uint8_t(least - 1)) : low;
-    }
+    const float value = !has_two_alphas ? parts[i] : is_covered[i] ? 1.0F : 0.0F;
+    const std::uint8_t alpha = rounded(cutoff + (value - at) * range);
+    image.texels[4 * i + 3] = is_covered[i] ? std::max(alpha, least) : std::min(alpha, std::uint8_t(least - 1));
   }
   fill_uncovered(image, parts);
 }
