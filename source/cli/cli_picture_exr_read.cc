@@ -242,7 +242,13 @@ std::optional<Picture> read_exr_picture(const fs::path &path, const std::string 
   }
   const ExrLayer layer = chosen(layers, layer_label);
   input.check_memory(layer.part);
-  if (layer.has_chroma && file.parts() == 1) {
+  if (layer.has_chroma) {
+    // OpenEXR computes colours of files of one part only.
+    if (file.parts() > 1) {
+      throw std::runtime_error(fmt::format(
+          "has luminance and chroma (Y, RY and BY) in '{}', one of several parts; they are read from files of one part",
+          layer.label));
+    }
     return read_chroma(path, layer);
   }
   return read_channels(file, layer);

@@ -89,6 +89,8 @@ struct SceneWork {
   const StopRequests &stops;
   Progress &progress;
   RenderResult &result;
+  /** \see content_of. Empty: no part of a picture is written. */
+  const std::string &content;
 };
 
 /** \return whether the last picture has all samples that were asked for */
@@ -140,6 +142,16 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
   }
 }
 
+/** Prints those of \a texts that \a printed does not have. */
+void print_new_messages(std::string_view kind, const std::vector<std::string> &texts,
+                        const std::vector<std::string> &printed)
+{
+  std::vector<std::string> fresh;
+  std::ranges::copy_if(texts, std::back_inserter(fresh),
+                       [&](const std::string &text) { return std::ranges::find(printed, text) == printed.end(); });
+  print_messages(kind, fresh);
+}
+
 struct ImportedScene {
   scene::Scene scene;
   double seconds = 0.0;
@@ -173,6 +185,9 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
                           .metadata = work.frames.metadata(index)};
   picture.metadata.emplace_back("gnomon:camera", camera.name);
   picture.metadata.emplace_back("gnomon:device", work.result.device);
+  if (!work.content.empty()) {
+    picture.metadata.emplace_back("gnomon:content", work.content);
+  }
   if (!options.plan_id.empty()) {
     picture.metadata.emplace_back(plan_metadata, options.plan_id);
   }
@@ -239,7 +254,7 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
       camera = find_camera(scene, options.camera);
       renderer.sync();
     }
-    const SceneWork frame_work{options, frames, work.stops, work.progress, result};
+    const SceneWork frame_work{options, frames, work.stops, work.progress, result, work.content};
     const bool is_complete = render_frames(frame_work, i, camera, renderer, display);
     if (!is_complete && !options.has_checkpoint) {
       return Status::Stopped;
@@ -271,6 +286,19 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
   return Status::Done;
 }
 
+/**
+ * A fingerprint of the files that make a picture, so that parts of other content are not merged. \a imported: of the
+ * scene before it is posed, which differs between processors
+ */
+std::string content_of(const std::string &imported, const std::optional<scene::World> &world)
+{
+  scene::Scene sky;
+  if (world && world->picture && !world->picture->path.empty()) {
+    sky.set_world(world);
+  }
+  return imported + scene_fingerprint(sky);
+}
+
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
 Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
@@ -279,6 +307,8 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
+  const bool is_part = options.is_part() || options.has_checkpoint;
+  const std::string imported = is_part ? scene_fingerprint(scene) : std::string();
   frames.choose_animations(scene);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
@@ -286,6 +316,7 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   constexpr glm::vec3 light_grey(0.6F);
   const eevee::Background background = background_of(
       options.background, is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt);
+  const std::string content = is_part ? content_of(imported, scene.world()) : std::string();
   aov.check(scene);
   std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);
@@ -321,9 +352,14 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   result.sync_seconds = seconds_since(sync_start);
 
   Progress progress(options.has_progress_lines, frames.count(), options.samples);
-  const Status status = render_sequence({options, frames, stops, progress, result}, aov, scene, camera, renderer);
+  const Status status =
+      render_sequence({options, frames, stops, progress, result, content}, aov, scene, camera, renderer);
+  // Surface functions are compiled by the first picture.
+  eevee::Report drawn = inspection.report();
+  print_new_messages("warning", drawn.warnings, result.report.warnings);
+  print_new_messages("limit", drawn.limits, result.report.limits);
   if (aov.empty()) {
-    result.report = inspection.report();
+    result.report = std::move(drawn);
   }
   if (!options.has_picture()) {
     print_message("gnomon: the null backend draws nothing: no picture is written\n");

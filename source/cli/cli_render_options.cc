@@ -208,6 +208,21 @@ eevee::Settings RenderOptions::engine_settings() const
   return settings;
 }
 
+/** \a text, of which a number or a color may be spelt in several ways. \a type: of the option */
+static std::string plain_text(const std::string &text, const std::string &type)
+{
+  std::int64_t whole = 0;
+  double number = 0.0;
+  if (type.starts_with("INT") && CLI::detail::lexical_cast(text, whole)) {
+    return std::to_string(whole);
+  }
+  if (type.starts_with("FLOAT") && CLI::detail::lexical_cast(text, number)) {
+    return fmt::format("{}", number);
+  }
+  const std::optional<glm::vec3> color = type.starts_with("TEXT") ? parse_color(text) : std::nullopt;
+  return color ? fmt::format("{},{},{}", color->r, color->g, color->b) : text;
+}
+
 /**
  * The options with their values, but for those that parts of one picture may differ in: what is written beside it,
  * which part of it is drawn, and how it is checked. A new option is compared unless it is named here.
@@ -231,12 +246,11 @@ static std::string settings_text(const CLI::App &command)
       continue;
     }
     std::string value = option->count() > 0 ? CLI::detail::join(option->results(), " ") : option->get_default_str();
-    // A number may be spelt in several ways.
-    double number = 0.0;
-    const char *end = value.data() + value.size();
-    if (const auto [after, error] = std::from_chars(value.data(), end, number); error == std::errc() && after == end) {
-      value = fmt::format("{}", number);
+    if (name == "--world") {
+      // Its folder may differ between machines. What is in it is compared, too.
+      value = std::filesystem::path(value).filename().string();
     }
+    value = plain_text(value, option->get_type_name());
     const bool is_word = !value.empty() && value.find_first_of(" '") == value.npos;
     text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, is_word ? value : fmt::format("'{}'", value));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace gnomon::scene {
 
@@ -151,40 +152,78 @@ glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max)
 }
 
 /**
- * Decides which texels of a reduced mask are covered, as its texels are covered or not and \a parts are not. Those of
- * a half or more are; where that would change the covered part of the image, as grass and nets do, what a texel has
- * too much or too little goes to its neighbours (Floyd and Steinberg, 1976). Sets the alphas of \a image.
+ * What a linear filter shows of texels of a width that are covered or not, in rows. Its value is the covered share of
+ * the four texels around a point; the texels repeat.
  */
-static void cover(Image &image, std::vector<float> parts, float cutoff)
-{
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const float part : parts) {
-    sum += double(part);
-    count += part >= 0.5F ? 1 : 0;
+class FilteredCover {
+ public:
+  FilteredCover(const std::vector<bool> &is_covered, std::size_t width)
+  {
+    const std::size_t height = is_covered.size() / width;
+    for (std::size_t y = 0; y < height; y++) {
+      for (std::size_t x = 0; x < width; x++) {
+        const auto covers = [&](std::size_t a, std::size_t b) -> unsigned {
+          return is_covered[(y + b) % height * width + (x + a) % width] ? 1U : 0U;
+        };
+        shares_[covers(0, 0) | covers(1, 0) << 1U | covers(0, 1) << 2U | covers(1, 1) << 3U] +=
+            1.0 / double(is_covered.size());
+      }
+    }
   }
-  constexpr double change_max = 0.01;
-  const bool is_diffused = std::abs(double(count) - sum) > change_max * double(parts.size());
-  const auto least = std::uint8_t(std::clamp(std::ceil(255.0F * cutoff), 1.0F, 255.0F));
-  // As far above the cutoff as below it, so that a filter between two texels changes sides in their middle.
-  const float distance = std::min(cutoff, 1.0F - cutoff);
-  const std::uint8_t high = std::max(rounded(cutoff + distance), least);
-  const std::uint8_t low = std::min(rounded(cutoff - distance), std::uint8_t(least - 1));
-  const std::size_t width = image.width;
+
+  /** The part of the image where the value is at least \a least. */
+  [[nodiscard]] double part(float least) const
+  {
+    double sum = 0.0;
+    for (unsigned corners = 0; corners < shares_.size(); corners++) {
+      int count = 0;
+      for (int y = 0; y < step_count && shares_[corners] > 0.0; y++) {
+        for (int x = 0; x < step_count; x++) {
+          const float u = (float(x) + 0.5F) / float(step_count);
+          const float v = (float(y) + 0.5F) / float(step_count);
+          const auto of = [&](unsigned corner) { return float(corners >> corner & 1U); };
+          count += std::lerp(std::lerp(of(0), of(1), u), std::lerp(of(2), of(3), u), v) >= least ? 1 : 0;
+        }
+      }
+      sum += shares_[corners] * count / (step_count * step_count);
+    }
+    return sum;
+  }
+
+  /** The value from which on the covered part is \a wanted. */
+  [[nodiscard]] float least_of(double wanted) const
+  {
+    // A single covered texel covers its area from 0.38 on, and a single hole from 0.62 on.
+    float low = 0.25F;
+    float high = 0.75F;
+    for (int i = 0; i < 10; i++) {
+      const float middle = (low + high) / 2.0F;
+      (part(middle) > wanted ? low : high) = middle;
+    }
+    return (low + high) / 2.0F;
+  }
+
+ private:
+  static constexpr int step_count = 32;
+  /** The share of each pattern of four neighbours; bit 0: the upper left one is covered. */
+  std::array<double, 16> shares_{};
+};
+
+/**
+ * Decides which texels are covered: those of a part of a half or more; where that would change the covered part of the
+ * image, as grass and nets do, what a texel has too much or too little goes to its neighbours (Floyd and Steinberg,
+ * 1976). A texel of which no part is covered has no color for it.
+ */
+static std::vector<bool> covered_texels(const std::vector<float> &parts, std::size_t width, bool is_diffused)
+{
+  std::vector<bool> is_covered(parts.size());
+  std::vector<float> wanted = parts;
   for (std::size_t i = 0; i < parts.size(); i++) {
-    // What had no alpha keeps none, because its color is not seen.
-    const bool is_covered = parts[i] >= 0.5F && image.texels[4 * i + 3] > 0;
-    std::uint8_t &alpha = image.texels[4 * i + 3];
-    if (is_covered) {
-      alpha = is_diffused ? high : std::max(alpha, least);
-    }
-    else {
-      alpha = std::min(alpha, is_diffused ? low : std::uint8_t(least - 1));
-    }
+    is_covered[i] = wanted[i] >= 0.5F && parts[i] > 0.0F;
     if (!is_diffused) {
       continue;
     }
-    const float error = parts[i] - (is_covered ? 1.0F : 0.0F);
+    const float error = wanted[i] - (is_covered[i] ? 1.0F : 0.0F);
     const std::size_t x = i % width;
     // Shares of sixteen go to the right, and to the three texels below. At an edge, they go to those that there are.
     struct Share {
@@ -203,10 +242,73 @@ static void cover(Image &image, std::vector<float> parts, float cutoff)
     }
     for (const Share &one : shares) {
       if (one.is_there) {
-        parts[one.at] += error * one.share / whole;
+        wanted[one.at] += error * one.share / whole;
       }
     }
   }
+  return is_covered;
+}
+
+/**
+ * Texels of which no part is covered have the mean colour of the neighbours that have one, so that a filter between
+ * them mixes in no colour that is not seen. The texels repeat.
+ */
+static void fill_uncovered(Image &image, const std::vector<float> &parts)
+{
+  const std::size_t width = image.width;
+  const std::size_t height = image.height;
+  for (std::size_t y = 0; y < height; y++) {
+    for (std::size_t x = 0; x < width; x++) {
+      if (parts[y * width + x] > 0.0F) {
+        continue;
+      }
+      std::array<unsigned, 3> sum{};
+      unsigned count = 0;
+      for (std::size_t b = height - 1; b <= height + 1; b++) {
+        for (std::size_t a = width - 1; a <= width + 1; a++) {
+          const std::size_t at = (y + b) % height * width + (x + a) % width;
+          if (parts[at] > 0.0F) {
+            for (std::size_t c = 0; c < sum.size(); c++) {
+              sum[c] += image.texels[4 * at + c];
+            }
+            count++;
+          }
+        }
+      }
+      for (std::size_t c = 0; count > 0 && c < sum.size(); c++) {
+        image.texels[4 * (y * width + x) + c] = std::uint8_t((sum[c] + count / 2) / count);
+      }
+    }
+  }
+}
+
+/**
+ * Sets the alphas of a reduced mask, whose texels are covered or not, and \a parts are not. They are the part, as far
+ * above the cutoff as a half. Where the covered part of the image would change, by texels or by a linear filter between
+ * them, texels have one of two alphas, so that the filter shows that part.
+ */
+static void cover(Image &image, const std::vector<float> &parts, float cutoff)
+{
+  const double wanted = std::accumulate(parts.begin(), parts.end(), 0.0) / double(parts.size());
+  constexpr double change_max = 0.01;
+  std::vector<bool> is_covered = covered_texels(parts, image.width, false);
+  const double count = double(std::ranges::count(is_covered, true)) / double(parts.size());
+  const bool is_diffused = std::abs(count - wanted) > change_max;
+  if (is_diffused) {
+    is_covered = covered_texels(parts, image.width, true);
+  }
+  const FilteredCover filtered(is_covered, image.width);
+  const bool has_two_alphas = is_diffused || std::abs(filtered.part(0.5F) - wanted) > change_max;
+  // What lies at the cutoff.
+  const float at = has_two_alphas ? filtered.least_of(wanted) : 0.5F;
+  const float range = std::min(cutoff / at, (1.0F - cutoff) / (1.0F - at));
+  const auto least = std::uint8_t(std::clamp(std::ceil(255.0F * cutoff), 1.0F, 255.0F));
+  for (std::size_t i = 0; i < parts.size(); i++) {
+    const float value = !has_two_alphas ? parts[i] : is_covered[i] ? 1.0F : 0.0F;
+    const std::uint8_t alpha = rounded(cutoff + (value - at) * range);
+    image.texels[4 * i + 3] = is_covered[i] ? std::max(alpha, least) : std::min(alpha, std::uint8_t(least - 1));
+  }
+  fill_uncovered(image, parts);
 }
 
 Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cutoff)
@@ -260,7 +362,7 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cuto
     }
   }
   if (is_mask) {
-    cover(result, std::move(parts), mask_cutoff);
+    cover(result, parts, mask_cutoff);
   }
   return result;
 }

@@ -7,6 +7,13 @@
 
 #include <fmt/format.h>
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+
 #include <bit>
 #include <fstream>
 #include <limits>
@@ -79,6 +86,48 @@ TEST_F(ExrPictureTest, LuminanceIsGrey)
   EXPECT_EQ(first_pixel("y.exr"), glm::vec3(1));
   write_channels("ya.exr", spec, {"Y", "A"});
   EXPECT_EQ(first_pixel("ya.exr"), glm::vec3(1));
+}
+
+/** Parts of luminance and chroma, which has half of the pixels along both edges. */
+void write_chroma_parts(const std::filesystem::path &path, const std::vector<std::string> &parts)
+{
+  constexpr int size = 4;
+  std::vector<Imf::Header> headers;
+  for (const std::string &part : parts) {
+    Imf::Header header(size, size);
+    header.setName(part);
+    header.setType(Imf::SCANLINEIMAGE);
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    header.channels().insert("RY", Imf::Channel(Imf::HALF, 2, 2));
+    header.channels().insert("BY", Imf::Channel(Imf::HALF, 2, 2));
+    headers.push_back(header);
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), int(headers.size()));
+  std::vector<half> values(std::size_t(size) * size, half(0.5F));
+  for (int i = 0; i < int(headers.size()); i++) {
+    Imf::OutputPart part(file, i);
+    Imf::FrameBuffer buffer;
+    for (const auto &[name, step] : {std::pair("Y", 1), std::pair("RY", 2), std::pair("BY", 2)}) {
+      buffer.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char *>(values.data()), sizeof(half),
+                                     std::size_t(size) * sizeof(half), step, step));
+    }
+    part.setFrameBuffer(buffer);
+    part.writePixels(size);
+  }
+}
+
+TEST_F(ExrPictureTest, ChromaIsColourAndNotGrey)
+{
+  write_chroma_parts(folder / "one.exr", {"a"});
+  // (R - Y) / Y and (B - Y) / Y are 0.5.
+  const glm::vec3 color = first_pixel("one.exr");
+  EXPECT_NEAR(color.r, 0.75F, 1e-3F);
+  EXPECT_NEAR(color.b, 0.75F, 1e-3F);
+  EXPECT_LT(color.g, 0.5F);
+  write_chroma_parts(folder / "two.exr", {"a", "b"});
+  EXPECT_NE(error_of("two.exr", "b").find((folder / "two.exr").string() + ": has luminance and chroma (Y, RY and BY)"),
+            std::string::npos)
+      << error_of("two.exr", "b");
 }
 
 TEST_F(ExrPictureTest, TheOnlyLayerIsReadAndOneOfSeveralIsNamed)

@@ -152,6 +152,20 @@ TEST_F(SlowFramesTest, FramesOfProcessesThatWereKilledAreWholeAndResumedToTheEnd
   EXPECT_GT(kills, 0);
 }
 
+TEST_F(FramesTest, AnAnimationThatCannotBePlayedIsNamedWithTheReason)
+{
+  nlohmann::json gltf = nlohmann::json::parse(test::moving_triangle_gltf({100, 0, 0}));
+  // Its values are its times.
+  nlohmann::json &sampler = gltf["animations"][0]["samplers"][0];
+  sampler["output"] = sampler["input"];
+  write("moving.gltf", gltf.dump());
+  const Finished finished = render("-o f#.exr --frames 0-1");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("the scene has none that can be played; animation 'leave': channel left out: "),
+            std::string::npos)
+      << finished.err;
+}
+
 TEST_F(FramesTest, WrongUseIsNamed)
 {
   for (const char *range : {"3-1", "-1-2", "1-", "a", "1-2x"}) {

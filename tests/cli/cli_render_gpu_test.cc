@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `gnomon render` on the driver.
+#include "cli_picture.hh"
 #include "cli_process.hh"
 #include "gpu_device_fixture.hh"
 
@@ -301,6 +302,49 @@ TEST_F(CliRenderTest, PartsWithOtherSettingsAreNotMerged)
       0);
   const Finished merged = run("merge low.exr high.exr -o whole.exr");
   EXPECT_EQ(merged.status, 0) << merged.err;
+}
+
+TEST_F(CliRenderTest, PartsOfOtherContentUnderTheSameNamesAreNotMerged)
+{
+  const auto write_scene = [&](const std::string &color) {
+    std::string gltf = test::variants_gltf;
+    const std::string before = R"({"doubleSided":true})";
+    write("s.gltf", gltf.replace(gltf.find(before), before.size(),
+                                 R"({"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":)" + color + "}}"));
+  };
+  const auto write_world = [&](float radiance) {
+    cli::write_exr(folder / "w.exr", {2, 1}, std::vector<float>(8, radiance), {});
+  };
+  write_scene("[1,0,0,1]");
+  write_world(1.0F);
+  const std::string render = "render s.gltf --size 16x16 --samples 2 --world ";
+  ASSERT_EQ(run(render + "w.exr -o low.exr --tile 1/2").status, 0);
+  const auto status = [&] {
+    EXPECT_EQ(run(render + (folder / "w.exr").string() + " -o high.exr --tile 2/2").status, 0);
+    return run("merge low.exr high.exr -o both.exr").status;
+  };
+  EXPECT_EQ(status(), 0) << "the folder of the world may differ";
+  write_world(2.0F);
+  EXPECT_EQ(status(), 1);
+  write_world(1.0F);
+  write_scene("[0,1,0,1]");
+  EXPECT_EQ(status(), 1);
+}
+
+TEST_F(CliRenderTest, FaultsThatThePictureFindsAreNamed)
+{
+  write("s.surface.glsl", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n  nonsense;\n}\n");
+  std::string gltf = test::variants_gltf;
+  const std::string before = R"({"doubleSided":true})";
+  write("s.gltf", gltf.replace(gltf.find(before), before.size(),
+                               R"({"doubleSided":true,"extras":{"gnomon_surface":"s.surface.glsl"}})"));
+  for (const std::string layers : {"", " --aov normal"}) {
+    const Finished finished = run("render s.gltf -o o.exr --size 16x16 --samples 1" + layers);
+    EXPECT_EQ(finished.status, 0);
+    EXPECT_NE(finished.err.find("its surface function is broken, and magenta is drawn instead: s.surface.glsl:3"),
+              std::string::npos)
+        << finished.err;
+  }
 }
 
 TEST_F(CliRenderTest, OnlyBelowLeavesOutFilesElsewhere)

@@ -133,6 +133,28 @@ double covered_part(const Image &image, float cutoff)
   return 4.0 * double(count) / double(image.texels.size());
 }
 
+/** The part of \a image that a linear filter between its texels, which repeat, shows. */
+double filtered_part(const Image &image, float cutoff)
+{
+  constexpr std::uint32_t steps = 8;
+  const auto alpha = [&](std::uint32_t x, std::uint32_t y) {
+    return float(image.texels[4 * (y % image.height * image.width + x % image.width) + 3]) / 255.0F;
+  };
+  std::size_t count = 0;
+  for (std::uint32_t j = 0; j < steps * image.height; j++) {
+    for (std::uint32_t i = 0; i < steps * image.width; i++) {
+      const std::uint32_t x = i / steps;
+      const std::uint32_t y = j / steps;
+      const float u = (float(i % steps) + 0.5F) / float(steps);
+      const float v = (float(j % steps) + 0.5F) / float(steps);
+      const float value =
+          std::lerp(std::lerp(alpha(x, y), alpha(x + 1, y), u), std::lerp(alpha(x, y + 1), alpha(x + 1, y + 1), u), v);
+      count += value >= cutoff ? 1 : 0;
+    }
+  }
+  return double(count) / double(steps * steps * image.width * image.height);
+}
+
 TEST(ReducedMask, CoversAsMuchAsTheImage)
 {
   for (const float cutoff : {0.1F, 0.5F, 0.9F}) {
@@ -141,12 +163,39 @@ TEST(ReducedMask, CoversAsMuchAsTheImage)
         const Image image = leaf_mask(128, [&](std::uint32_t x, std::uint32_t) { return x % 8 < covered; });
         const Image small = reduced(image, size, ImageUse::Mask, cutoff);
         EXPECT_NEAR(covered_part(small, cutoff), covered / 8.0, 1.0 / size) << cutoff << ' ' << size << ' ' << covered;
+        // Edges lie between texels that are covered in part.
+        EXPECT_NEAR(filtered_part(small, cutoff), covered / 8.0, 0.03) << cutoff << ' ' << size << ' ' << covered;
         for (std::size_t i = 0; i < small.texels.size(); i += 4) {
           if (float(small.texels[i + 3]) / 255.0F >= cutoff && covered > 0) {
             EXPECT_EQ(small.texels[i], 50) << "red is not seen";
           }
         }
       }
+    }
+  }
+}
+
+TEST(ReducedMask, ShowsNoColorThatIsCutOut)
+{
+  // Red has little alpha. Errors of texels go to neighbours of which no part is covered.
+  Image image = leaf_mask(64, [](std::uint32_t x, std::uint32_t y) { return x % 8 < 2 && y % 8 < 2; });
+  for (std::size_t i = 3; i < image.texels.size(); i += 4) {
+    image.texels[i] = image.texels[i - 3] == 255 ? 150 : 255;
+  }
+  const Image small = reduced(image, 16, ImageUse::Mask, 0.8F);
+  EXPECT_NEAR(covered_part(small, 0.8F), 1.0 / 16.0, 0.01);
+  for (std::size_t i = 0; i < small.texels.size(); i += 4) {
+    EXPECT_TRUE(small.texels[i] == 50 || float(small.texels[i + 3]) < 0.8F * 255.0F) << i;
+  }
+}
+
+TEST(ReducedMask, DotsAndHolesKeepTheirAreaInAFilter)
+{
+  for (const std::uint32_t size : {32U, 64U}) {
+    for (const bool is_hole : {false, true}) {
+      const Image image =
+          leaf_mask(128, [&](std::uint32_t x, std::uint32_t y) { return (x % 8 < 4 && y % 8 < 4) != is_hole; });
+      EXPECT_NEAR(filtered_part(reduced(image, size, ImageUse::Mask, 0.5F), 0.5F), is_hole ? 0.75 : 0.25, 0.02) << size;
     }
   }
 }

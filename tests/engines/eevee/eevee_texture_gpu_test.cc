@@ -185,6 +185,29 @@ TEST_F(DistantMaskGpuTest, CoversItsShareAtAnyNumberOfSamples)
   }
 }
 
+TEST_F(DistantMaskGpuTest, CoversItsShareWherePixelsAreAsLargeAsItsPattern)
+{
+  // Columns repeat after 4, 2, 1 and half a pixel. The leaf is 40 pixels wide.
+  for (const std::uint32_t texels_per_pixel : {2U, 4U, 8U, 16U}) {
+    for (const std::uint32_t covered : {1U, 3U, 6U}) {
+      scene = {};
+      const std::uint32_t width = 40 * texels_per_pixel;
+      Bytes texels;
+      for (std::uint32_t i = 0; i < width * width; i++) {
+        const Bytes texel = i % width % 8 < covered ? Bytes{0, 200, 0, 255} : Bytes{255, 0, 0, 0};
+        texels.insert(texels.end(), texel.begin(), texel.end());
+      }
+      add(add_textured(width, texels), {0, 0, 0});
+      scene.edit(scene.textures().first(), [&](scene::Texture &texture) { texture.mip = scene::MipFilter::Linear; });
+      test::edit_material(scene, 0, [](scene::Material &material) { material.is_unlit = true; });
+      for (const int sample_count : {1, 16}) {
+        EXPECT_NEAR(mean(sample_count).a, float(covered) / 8.0F, 0.01F)
+            << sample_count << ' ' << texels_per_pixel << ' ' << covered;
+      }
+    }
+  }
+}
+
 TEST_F(DistantMaskGpuTest, WithoutMipLevelsIsThatOfItsTexels)
 {
   add_leaf(scene::MipFilter::None);

@@ -1,41 +1,27 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""check_variants GNOMON [COUNT [SEED]]: pictures of random spellings of one scene are what glTF 2.0 says.
+"""Pictures of random spellings of one scene are what glTF 2.0 says.
 
 Each scene is a quad that fills the picture, red on the left and green on the right, or mirrored. It differs in the mode and the
 indices of its primitive, in what opens it (morph targets, joints, sparse accessors, an animation), in its node (mirrored, instanced,
-below others), in its set of texture coordinates and their transform, in its visibility and in its files.
-
-Requires python3-numpy and python3-openimageio.
+below others), in its set of texture coordinates and their transform, in its light, in its visibility and
+in its files.
 """
 import math
-import os
-import random
 import struct
-import subprocess
-import sys
-import tempfile
 
 import numpy
-import OpenImageIO
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "../../scripts"))
-import gltf_file
+from variants import QUAD, UVS, expect, gltf_file
 
-program = sys.argv[1]
-count = int(sys.argv[2]) if len(sys.argv) > 2 else 16
-seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-
-QUAD = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
-UVS = [[0, 1], [1, 1], [1, 0], [0, 0]]
-CHOICES = {
+VALUES = {
     "mode": [4, 5, 6],
     "indices": [None, "B", "H", "I"],
     "opened": ["at rest", "morph", "two morphs", "morph of node", "animated morph", "skin", "skin and morph", "sparse", "zeros and morph"],
     "node": ["plain", "mirrored", "matrix", "parent", "all axes", "instance", "far away"],
     "uv set": range(8),
     "transform": ["none", "offset", "scale", "rotation", "other set"],
+    "material": ["unlit", "unlit", "lit", "lit front", "lit back"],
+    "normals": [False, True],
     "seen": ["always", "visible", "animated", "hidden above"],
     "file": ["data URI", "buffer beside", "GLB", "GLB and buffer"],
 }
@@ -43,7 +29,7 @@ COMPONENTS = {"B": 5121, "H": 5123, "I": 5125}
 ORDERS = {4: [0, 1, 2, 0, 2, 3], 5: [0, 1, 3, 2], 6: [0, 1, 2, 3]}
 
 
-def scene_of(of):
+def scene_of(random, of):
     """The scene of a choice; the colours of the left and the right half."""
     gltf = gltf_file.Gltf()
     json = gltf.json
@@ -71,12 +57,24 @@ def scene_of(of):
         texture["extensions"] = {"KHR_texture_transform": transform}
     if of["transform"] == "other set":
         texture["texCoord"] = (uv_set + 1) % 8
-    material = gltf.material(pbrMetallicRoughness={"baseColorTexture": texture}, extensions={"KHR_materials_unlit": {}})
+    brightness = 1
+    if of["material"] == "unlit":
+        material = gltf.material(pbrMetallicRoughness={"baseColorTexture": texture}, extensions={"KHR_materials_unlit": {}})
+    else:
+        # A sun of 1 W/m2 towards -Z, on a surface that scatters it and has no highlight.
+        json["extensionsUsed"] += ["KHR_lights_punctual", "KHR_materials_specular"]
+        json["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 683}]}}
+        gltf.node(extensions={"KHR_lights_punctual": {"light": 0}})
+        material = gltf.material(pbrMetallicRoughness={"baseColorTexture": texture, "metallicFactor": 0},
+                                 extensions={"KHR_materials_specular": {"specularFactor": 0}})
+        brightness = 1 / math.pi
 
     primitive = {"attributes": {}, "mode": of["mode"], "material": material}
     if of["indices"]:
         primitive["indices"] = gltf.accessor([[i] for i in order], "SCALAR", of["indices"], COMPONENTS[of["indices"]])
     attributes = primitive["attributes"]
+    if of["normals"]:
+        attributes["NORMAL"] = vectors([[0, 0, 1]] * 4)
     for i in range(8):
         attributes[f"TEXCOORD_{i}"] = gltf.accessor(rows(UVS if i == uv_set else [[0.2, 0.2]] * 4), "VEC2")
     mesh = {"primitives": [primitive]}
@@ -154,7 +152,8 @@ def scene_of(of):
 
     if opened == "animated morph":
         animate({"node": index, "path": "weights"}, [[0], [1]], "SCALAR")
-    left, right = ((0, 1, 0, 1), (1, 0, 0, 1)) if is_swapped else ((1, 0, 0, 1), (0, 1, 0, 1))
+    red, green = (brightness, 0, 0, 1), (0, brightness, 0, 1)
+    left, right = (green, red) if is_swapped else (red, green)
     if of["seen"] == "visible":
         set_visible(index, True)
     elif of["seen"] == "hidden above":
@@ -171,36 +170,14 @@ def scene_of(of):
     return gltf, left, right
 
 
-def check(number, of, folder):
-    gltf, left, right = scene_of(of)
-    path = gltf.write_form(f"{folder}/scene", of["file"])
+def check(program, random, of):
+    gltf, left, right = scene_of(random, of)
+    path = gltf.write_form(f"{program.folder}/scene", of["file"])
     options = ["--frames", "1", "--fps", "1"] if "animations" in gltf.json else []
-    finished = subprocess.run([program, "render", path, "-o", f"{folder}/picture.exr", "--size", "8x8", "--samples", "1", "--world", "1,1,1",
-                               "--background", "none", *options], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
-    if finished.returncode != 0:
-        print(f"variant {number} {of}: status {finished.returncode}: {finished.stderr}")
-        return False
-    file = OpenImageIO.ImageInput.open(f"{folder}/picture.exr")
-    names = file.spec().channelnames
-    pixels = numpy.asarray(file.read_image("float"))[..., [names.index(name) for name in "RGBA"]]
+    if of["material"].startswith("lit "):
+        options += ["--casters", of["material"].split()[1]]
+    pixels = program.render(path, "--size", "8x8", "--samples", "1", "--world", "none", "--background", "none", *options)
     # Filters reach over the middle and the edges.
-    error = max(numpy.abs(pixels[1:7, 1] - left).max(), numpy.abs(pixels[1:7, 6] - right).max())
-    if error > 1e-3:
-        print(f"variant {number} {of}: differs by {error}: {pixels[4, 1]} and {pixels[4, 6]}, not {left} and {right}; {finished.stderr}")
-    return error <= 1e-3
-
-
-random.seed(seed)
-failures = 0
-unused = {name: [] for name in CHOICES}
-with tempfile.TemporaryDirectory() as temporary:
-    for n in range(count):
-        # Each value of each choice is used before one is used again.
-        chosen = {}
-        for name, values in CHOICES.items():
-            if not unused[name]:
-                unused[name] = random.sample(list(values), len(values))
-            chosen[name] = unused[name].pop()
-        failures += not check(n, chosen, temporary)
-print(f"{count} variants of seed {seed}, {failures} wrong")
-sys.exit(failures > 0)
+    for x, color in ((1, left), (6, right)):
+        error = numpy.abs(pixels[1:7, x] - color).max()
+        expect(error <= 1e-3, f"column {x} differs by {error}: {pixels[4, x]}, not {color}")
