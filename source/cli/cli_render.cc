@@ -401,6 +401,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     static_cast<void>(import.get());
     throw;
   }
+  const RenderResult of_device = result;
   Status status = Status::Done;
   Clock::time_point scene_start = start;
   for (std::size_t i = 0; i < scenes.size() && (status == Status::Done || !stops.is_stopped()); i++) {
@@ -413,14 +414,10 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
       if (i + 1 < scenes.size()) {
         next = start_import(scenes[i + 1], stops);
       }
-      RenderResult scene_result;
-      scene_result.device = result.device;
-      scene_result.device_seconds = result.device_seconds;
-      scene_result.import_seconds = imported.seconds;
-      const Status scene_status =
-          render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, scene_result);
+      result = of_device;
+      result.import_seconds = imported.seconds;
+      const Status scene_status = render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, result);
       status = status == Status::Done ? scene_status : status;
-      result = std::move(scene_result);
     }
     catch (const gltf::ImportCancelled &) {
       status = Status::Stopped;
@@ -530,25 +527,34 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
   }
   const RenderOptions options = options_of_part(given, plan, plan.parts[name.index]);
   fs::current_path(fs::absolute(name.plan).parent_path() / plan.folder);
-  const bool is_skipped = has_all_pictures(options);
   RenderResult result;
-  const Status status = is_skipped ? Status::Done : render(options, result);
-  std::array<char, 65> host{};
-  static_cast<void>(gethostname(host.data(), host.size() - 1));
-  const double picture_seconds = std::reduce(result.frame_seconds.begin(), result.frame_seconds.end());
-  const nlohmann::json line = {{"part", name.index},
-                               {"status", is_skipped                  ? "skipped"
-                                          : status == Status::Done    ? "done"
-                                          : status == Status::Stopped ? "stopped"
-                                                                      : "failed"},
-                               {"host", host.data()},
-                               {"seconds", seconds_since(start)},
-                               {"memory_bytes", memory_bytes_max()},
-                               {"picture_seconds", picture_seconds},
-                               {"pictures", result.frame_seconds.size()},
-                               {"samples", result.samples_drawn}};
-  fmt::print("{}\n", line.dump());
-  return status;
+  const auto print_line = [&](const char *part_status) {
+    std::array<char, 65> host{};
+    static_cast<void>(gethostname(host.data(), host.size() - 1));
+    const double picture_seconds = std::reduce(result.frame_seconds.begin(), result.frame_seconds.end());
+    const nlohmann::json line = {{"part", name.index},
+                                 {"status", part_status},
+                                 {"host", host.data()},
+                                 {"seconds", seconds_since(start)},
+                                 {"memory_bytes", memory_bytes_max()},
+                                 {"picture_seconds", picture_seconds},
+                                 {"pictures", result.frame_seconds.size()},
+                                 {"samples", result.samples_drawn}};
+    fmt::print("{}\n", line.dump());
+  };
+  if (has_all_pictures(options)) {
+    print_line("skipped");
+    return Status::Done;
+  }
+  try {
+    const Status status = render(options, result);
+    print_line(status == Status::Done ? "done" : status == Status::Stopped ? "stopped" : "failed");
+    return status;
+  }
+  catch (...) {
+    print_line("failed");
+    throw;
+  }
 }
 
 }  // namespace
@@ -556,8 +562,7 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
 MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
 {
   const Clock::time_point start = Clock::now();
-  const StopRequests stops;
-  scene::Scene scene = start_import(options, stops).get().scene;
+  scene::Scene scene = import_scene(options.scene, options.import_options());
   MeasuredScene measured{scene_fingerprint(scene), {}};
   FrameSequence frames(options.frames, options.output);
   frames.choose_animations(scene);
