@@ -213,9 +213,55 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
   return picture;
 }
 
-/** Renders and writes all frames of the sequence. */
+/** The picture that another thread writes while the next is drawn. */
+class PictureInWriting {
+ public:
+  explicit PictureInWriting(const SceneWork &work) : work_(work) {}
+
+  /** Waits for the picture before, and begins to write \a picture. \return false, as finish */
+  bool start(const RenderOptions &options, RenderedPicture picture, int index, double seconds_left)
+  {
+    if (!finish()) {
+      return false;
+    }
+    index_ = index;
+    seconds_left_ = seconds_left;
+    writing_ = std::async(std::launch::async, [options, picture = std::move(picture)] {
+      const trace::Span span("write picture");
+      return options.has_picture() ? write_picture(options, picture) : 0;
+    });
+    return true;
+  }
+  /** \return false if values of the picture are not finite. \throws what write_picture throws */
+  bool finish()
+  {
+    if (!writing_.valid()) {
+      return true;
+    }
+    work_.result.non_finite_count = writing_.get();
+    if (work_.result.non_finite_count > 0) {
+      return false;
+    }
+    if (work_.options.has_checkpoint) {
+      RenderOptions options = work_.options;
+      options.output = work_.frames.path(index_).string();
+      std::error_code ignored;
+      fs::remove(checkpoint_path(options), ignored);
+    }
+    work_.progress.written(index_, seconds_left_);
+    return true;
+  }
+
+ private:
+  const SceneWork &work_;
+  int index_ = 0;
+  double seconds_left_ = 0.0;
+  std::future<std::size_t> writing_;
+};
+
+/** Renders all frames of the sequence, and writes all but the last. */
 Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, scene::PlacedCamera camera,
-                       eevee::SceneRenderer &renderer)
+                       eevee::SceneRenderer &renderer, PictureInWriting &writing)
 {
   RenderOptions options = work.options;
   RenderResult &result = work.result;
@@ -246,29 +292,33 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
     }
     const Clock::time_point output_start = Clock::now();
     const double layer_seconds = result.layer_seconds;
-    const RenderedPicture picture = take_picture(frame_work, aov, scene, camera, renderer, display, i);
-    const trace::Span span("write picture");
+    RenderedPicture picture = take_picture(frame_work, aov, scene, camera, renderer, display, i);
     if (!is_complete) {
       const fs::path path = write_checkpoint(options, picture);
       print_message("gnomon: {}: samples {} to {}\n", path.string(), options.sample_bounds().x,
                     options.sample_bounds().x + picture.sample_count - 1);
       return Status::Stopped;
     }
-    if (options.has_picture()) {
-      result.non_finite_count = write_picture(options, picture);
-      if (result.non_finite_count > 0) {
-        return Status::NonFinite;
-      }
-      if (options.has_checkpoint) {
-        std::error_code ignored;
-        fs::remove(checkpoint_path(options), ignored);
-      }
+    rendered_count++;
+    const double seconds_left = seconds_since(start) / rendered_count * (frames.count() - i - 1);
+    if (!writing.start(options, std::move(picture), i, seconds_left)) {
+      return Status::NonFinite;
     }
     result.output_seconds += seconds_since(output_start) - (result.layer_seconds - layer_seconds);
-    rendered_count++;
-    work.progress.written(i, seconds_since(start) / rendered_count * (frames.count() - i - 1));
   }
   return Status::Done;
+}
+
+/** Renders and writes all frames of the sequence. */
+Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, const scene::PlacedCamera &camera,
+                       eevee::SceneRenderer &renderer)
+{
+  PictureInWriting writing(work);
+  const Status status = render_sequence(work, aov, scene, camera, renderer, writing);
+  const Clock::time_point output_start = Clock::now();
+  const bool is_finite = writing.finish();
+  work.result.output_seconds += seconds_since(output_start);
+  return is_finite ? status : Status::NonFinite;
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */

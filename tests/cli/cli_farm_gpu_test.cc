@@ -156,7 +156,7 @@ TEST_F(FarmTest, NoTwoScenesOfAPlanHaveOnePicture)
   EXPECT_EQ(same.status, 2);
   EXPECT_NE(same.err.find("moving_0.exr"), std::string::npos) << same.err;
   EXPECT_FALSE(fs::exists(folder / "jobs.json"));
-  EXPECT_EQ(run(plan + std::string("--seconds-per-frame 1 --pictures missing/f.exr")).status, 1)
+  EXPECT_EQ(run(plan + std::string("--frames 1 --seconds-per-frame 1 --pictures missing/f.exr")).status, 1)
       << "each part would fail";
 }
 
@@ -209,6 +209,12 @@ TEST_F(FarmTest, TransientFailuresHaveAStatusOfTheirOwn)
   fs::create_symlink("/dev/full", folder / "full.exr");
   EXPECT_EQ(run(render + "full.exr").status, 5);
   EXPECT_EQ(run(render + "missing/f.exr").status, 1);
+  // A picture is written while the next is drawn.
+  for (const std::string frame : {"0", "1", "2"}) {
+    fs::create_symlink("/dev/full", folder / ("s_" + frame + ".exr"));
+    EXPECT_EQ(run(render + "s_#.exr --frames 0-2 --fps 10").status, 5) << frame;
+    fs::remove(folder / ("s_" + frame + ".exr"));
+  }
   EXPECT_EQ(run("render missing.gltf -o f.exr").status, 1);
   setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
   const Finished without_device = run(render + "f.exr --backend gl");
