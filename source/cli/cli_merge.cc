@@ -5,6 +5,8 @@
 #include "cli_roles.hh"
 #include "cli_work_plan.hh"
 
+#include "scene_parallel.hh"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +21,7 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 namespace gnomon::cli {
 
@@ -277,54 +280,84 @@ std::string fault_of(const std::string &path, const std::string &id)
   }
 }
 
+/** A file of a plan. */
+struct PlannedFile {
+  /** Index of WorkPlan::parts. */
+  std::size_t part = 0;
+  std::string name{};
+  /** As fault_of. */
+  std::string fault{};
+};
+
+/** Sets PlannedFile::fault. */
+void find_faults(std::vector<PlannedFile> &files, const std::string &id)
+{
+  // Each thread has a file in memory.
+  constexpr unsigned thread_count_max = 8;
+  const unsigned thread_count = std::clamp(std::thread::hardware_concurrency(), 1U, thread_count_max);
+  scene::parallel_for(files.size(), thread_count, [&](std::size_t i) { files[i].fault = fault_of(files[i].name, id); });
+}
+
 /** Checks all parts of a plan, and joins those of pictures that are divided. */
 Status merge_plan(const std::string &path, bool is_checked_only)
 {
   const WorkPlan plan = read_plan(path);
   std::filesystem::current_path(std::filesystem::absolute(path).parent_path() / plan.folder);
   const std::string id = plan.id();
-  // The parts of each divided picture, and all pictures.
+  std::vector<PlannedFile> files;
+  // The parts of each divided picture.
   std::map<std::string, std::vector<std::string>> divided;
   std::size_t picture_count = 0;
-  std::size_t fault_count = 0;
   for (std::size_t i = 0; i < plan.parts.size(); i++) {
-    const std::vector<std::string> files = files_of(plan, plan.parts[i]);
-    const std::string picture = picture_of(plan, plan.parts[i]);
-    if (plan.parts[i].is_of_picture()) {
-      // A picture that was joined by an earlier merge does not need its parts.
-      if (!divided.contains(picture) && fault_of(picture, id).empty()) {
-        divided[picture];
+    for (const std::string &name : files_of(plan, plan.parts[i])) {
+      if (plan.parts[i].is_of_picture()) {
+        divided[picture_of(plan, plan.parts[i])].push_back(name);
       }
-      if (divided.contains(picture) && divided[picture].empty()) {
-        continue;
+      else {
+        picture_count++;
       }
-      divided[picture].push_back(files.front());
+      files.push_back({.part = i, .name = name});
     }
-    else {
-      picture_count += files.size();
+  }
+  picture_count += divided.size();
+  // A picture that was joined by an earlier merge does not need its parts.
+  std::vector<PlannedFile> pictures;
+  for (const auto &[picture, names] : divided) {
+    pictures.push_back({.name = picture});
+  }
+  find_faults(pictures, id);
+  std::set<std::string> not_needed;
+  for (const PlannedFile &picture : pictures) {
+    if (picture.fault.empty()) {
+      const std::vector<std::string> &names = divided.at(picture.name);
+      not_needed.insert(names.begin(), names.end());
+      divided.erase(picture.name);
     }
-    for (const std::string &file : files) {
-      if (const std::string fault = fault_of(file, id); !fault.empty()) {
-        print_message("gnomon: part {}: {}\n", i, fault);
-        fault_count++;
-      }
+  }
+  std::erase_if(files, [&](const PlannedFile &file) { return not_needed.contains(file.name); });
+  find_faults(files, id);
+  std::size_t fault_count = 0;
+  for (const PlannedFile &file : files) {
+    if (!file.fault.empty()) {
+      print_message("gnomon: part {}: {}\n", file.part, file.fault);
+      fault_count++;
     }
   }
   if (fault_count > 0) {
     print_message("gnomon: {}: {} files are missing or damaged; render their parts again\n", path, fault_count);
     return Status::Failed;
   }
-  for (const auto &[picture, files] : divided) {
-    if (files.empty() || is_checked_only) {
-      continue;
-    }
-    ExrPart whole = merge_parts(files);
+  if (is_checked_only) {
+    divided.clear();
+  }
+  for (const auto &[picture, names] : divided) {
+    ExrPart whole = merge_parts(names);
     whole.metadata.emplace_back(plan_metadata, id);
     if (const Status status = write_merged(picture, whole); status != Status::Done) {
       return status;
     }
   }
-  fmt::print("{}: {} pictures are complete\n", path, picture_count + divided.size());
+  fmt::print("{}: {} pictures are complete\n", path, picture_count);
   return Status::Done;
 }
 

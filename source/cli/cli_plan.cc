@@ -49,9 +49,14 @@ std::vector<std::string> arguments_of(const CLI::App &command)
     if (option->count() == 0 || !is_of_render || std::ranges::find(part_options, name) != part_options.end()) {
       continue;
     }
-    const bool is_flag = option->get_items_expected_max() == 0;
-    // With an equals sign, because a value may begin with a dash.
-    arguments.push_back(is_flag ? name : name + "=" + option->results().front());
+    if (option->get_items_expected_max() == 0) {
+      arguments.push_back(name);
+      continue;
+    }
+    for (const std::string &value : option->results()) {
+      // With an equals sign, because a value may begin with a dash.
+      arguments.push_back(name + "=" + value);
+    }
   }
   return arguments;
 }
@@ -96,6 +101,8 @@ Status plan(const PlanOptions &options, const CLI::App &command)
       throw UsageError(fmt::format("--pictures '{}' does not end in .exr", render.output));
     }
     const FrameSequence frames(render.frames, render.output);
+    // Of all frames, because their names differ by the number only.
+    roles.add_output(frames.path(0), "--pictures of " + path);
     MeasuredScene measured = measure_scene(render, device.get());
     if (!device) {
       measured.cost.sample_seconds = options.seconds_per_frame / render.samples;

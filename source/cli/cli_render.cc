@@ -228,9 +228,55 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
   return picture;
 }
 
-/** Renders and writes all frames of the sequence. */
+/** The picture that another thread writes while the next is drawn. */
+class PictureInWriting {
+ public:
+  explicit PictureInWriting(const SceneWork &work) : work_(work) {}
+
+  /** Waits for the picture before, and begins to write \a picture. \return false, as finish */
+  bool start(const RenderOptions &options, RenderedPicture picture, int index, double seconds_left)
+  {
+    if (!finish()) {
+      return false;
+    }
+    index_ = index;
+    seconds_left_ = seconds_left;
+    writing_ = std::async(std::launch::async, [options, picture = std::move(picture)] {
+      const trace::Span span("write picture");
+      return options.has_picture() ? write_picture(options, picture) : 0;
+    });
+    return true;
+  }
+  /** \return false if values of the picture are not finite. \throws what write_picture throws */
+  bool finish()
+  {
+    if (!writing_.valid()) {
+      return true;
+    }
+    work_.result.non_finite_count = writing_.get();
+    if (work_.result.non_finite_count > 0) {
+      return false;
+    }
+    if (work_.options.has_checkpoint) {
+      RenderOptions options = work_.options;
+      options.output = work_.frames.path(index_).string();
+      std::error_code ignored;
+      fs::remove(checkpoint_path(options), ignored);
+    }
+    work_.progress.written(index_, seconds_left_);
+    return true;
+  }
+
+ private:
+  const SceneWork &work_;
+  int index_ = 0;
+  double seconds_left_ = 0.0;
+  std::future<std::size_t> writing_;
+};
+
+/** Renders all frames of the sequence, and writes all but the last. */
 Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, scene::PlacedCamera camera,
-                       eevee::SceneRenderer &renderer)
+                       eevee::SceneRenderer &renderer, PictureInWriting &writing)
 {
   RenderOptions options = work.options;
   RenderResult &result = work.result;
@@ -261,27 +307,19 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
     }
     const Clock::time_point output_start = Clock::now();
     const double layer_seconds = result.layer_seconds;
-    const RenderedPicture picture = take_picture(frame_work, aov, scene, camera, renderer, display, i);
-    const trace::Span span("write picture");
+    RenderedPicture picture = take_picture(frame_work, aov, scene, camera, renderer, display, i);
     if (!is_complete) {
       const fs::path path = write_checkpoint(options, picture);
       print_message("gnomon: {}: samples {} to {}\n", path.string(), options.sample_bounds().x,
                     options.sample_bounds().x + picture.sample_count - 1);
       return Status::Stopped;
     }
-    if (options.has_picture()) {
-      result.non_finite_count = write_picture(options, picture);
-      if (result.non_finite_count > 0) {
-        return Status::NonFinite;
-      }
-      if (options.has_checkpoint) {
-        std::error_code ignored;
-        fs::remove(checkpoint_path(options), ignored);
-      }
+    rendered_count++;
+    const double seconds_left = seconds_since(start) / rendered_count * (frames.count() - i - 1);
+    if (!writing.start(options, std::move(picture), i, seconds_left)) {
+      return Status::NonFinite;
     }
     result.output_seconds += seconds_since(output_start) - (result.layer_seconds - layer_seconds);
-    rendered_count++;
-    work.progress.written(i, seconds_since(start) / rendered_count * (frames.count() - i - 1));
   }
   return Status::Done;
 }
@@ -297,6 +335,18 @@ std::string content_of(const std::string &imported, const std::optional<scene::W
     sky.set_world(world);
   }
   return imported + scene_fingerprint(sky);
+}
+
+/** Renders and writes all frames of the sequence. */
+Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, const scene::PlacedCamera &camera,
+                       eevee::SceneRenderer &renderer)
+{
+  PictureInWriting writing(work);
+  const Status status = render_sequence(work, aov, scene, camera, renderer, writing);
+  const Clock::time_point output_start = Clock::now();
+  const bool is_finite = writing.finish();
+  work.result.output_seconds += seconds_since(output_start);
+  return is_finite ? status : Status::NonFinite;
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
@@ -437,6 +487,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     static_cast<void>(import.get());
     throw;
   }
+  const RenderResult of_device = result;
   Status status = Status::Done;
   Clock::time_point scene_start = start;
   for (std::size_t i = 0; i < scenes.size() && (status == Status::Done || !stops.is_stopped()); i++) {
@@ -449,14 +500,10 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
       if (i + 1 < scenes.size()) {
         next = start_import(scenes[i + 1], stops);
       }
-      RenderResult scene_result;
-      scene_result.device = result.device;
-      scene_result.device_seconds = result.device_seconds;
-      scene_result.import_seconds = imported.seconds;
-      const Status scene_status =
-          render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, scene_result);
+      result = of_device;
+      result.import_seconds = imported.seconds;
+      const Status scene_status = render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, result);
       status = status == Status::Done ? scene_status : status;
-      result = std::move(scene_result);
     }
     catch (const gltf::ImportCancelled &) {
       status = Status::Stopped;
@@ -566,25 +613,35 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
   }
   const RenderOptions options = options_of_part(given, plan, plan.parts[name.index]);
   fs::current_path(fs::absolute(name.plan).parent_path() / plan.folder);
-  const bool is_skipped = has_all_pictures(options);
   RenderResult result;
-  const Status status = is_skipped ? Status::Done : render(options, result);
-  std::array<char, 65> host{};
-  static_cast<void>(gethostname(host.data(), host.size() - 1));
-  const double picture_seconds = std::reduce(result.frame_seconds.begin(), result.frame_seconds.end());
-  const nlohmann::json line = {{"part", name.index},
-                               {"status", is_skipped                  ? "skipped"
-                                          : status == Status::Done    ? "done"
-                                          : status == Status::Stopped ? "stopped"
-                                                                      : "failed"},
-                               {"host", host.data()},
-                               {"seconds", seconds_since(start)},
-                               {"memory_bytes", memory_bytes_max()},
-                               {"picture_seconds", picture_seconds},
-                               {"pictures", result.frame_seconds.size()},
-                               {"samples", result.samples_drawn}};
-  fmt::print("{}\n", line.dump());
-  return status;
+  const auto print_line = [&](const char *part_status) {
+    std::array<char, 65> host{};
+    static_cast<void>(gethostname(host.data(), host.size() - 1));
+    const double picture_seconds = std::reduce(result.frame_seconds.begin(), result.frame_seconds.end());
+    const nlohmann::json line = {{"part", name.index},
+                                 {"status", part_status},
+                                 {"host", host.data()},
+                                 {"seconds", seconds_since(start)},
+                                 {"memory_bytes", memory_bytes_max()},
+                                 {"picture_seconds", picture_seconds},
+                                 {"output_seconds", result.output_seconds},
+                                 {"pictures", result.frame_seconds.size()},
+                                 {"samples", result.samples_drawn}};
+    fmt::print("{}\n", line.dump());
+  };
+  if (has_all_pictures(options)) {
+    print_line("skipped");
+    return Status::Done;
+  }
+  try {
+    const Status status = render(options, result);
+    print_line(status == Status::Done ? "done" : status == Status::Stopped ? "stopped" : "failed");
+    return status;
+  }
+  catch (...) {
+    print_line("failed");
+    throw;
+  }
 }
 
 }  // namespace
@@ -592,25 +649,32 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
 MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
 {
   const Clock::time_point start = Clock::now();
-  const StopRequests stops;
-  scene::Scene scene = start_import(options, stops).get().scene;
+  scene::Scene scene = import_scene(options.scene, options.import_options());
   MeasuredScene measured{scene_fingerprint(scene), {}};
   FrameSequence frames(options.frames, options.output);
   frames.choose_animations(scene);
-  frames.pose(scene, frames.count() / 2);
+  frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   if (!device) {
     return measured;
   }
   light_by_world(scene, camera, options.world);
   eevee::SceneRenderer renderer(*device, scene, options.size_px(), options.engine_settings());
-  renderer.sync();
-  device->finish();
+  const auto draw_samples = [&](int count_max) {
+    renderer.sync();
+    const int count = renderer.draw(find_camera(scene, options.camera),
+                                    {.progress = [count_max](int drawn) { return drawn < count_max; }});
+    device->finish();
+    return count;
+  };
+  // The driver compiles programs for the first sample of a process.
+  draw_samples(1);
   measured.cost.start_seconds = seconds_since(start);
   const Clock::time_point draw_start = Clock::now();
+  // Another frame, for which shadows are drawn again.
+  frames.pose(scene, frames.count() / 2);
   constexpr int sample_count_max = 4;
-  const int sample_count = renderer.draw(camera, {.progress = [](int drawn) { return drawn < sample_count_max; }});
-  device->finish();
+  const int sample_count = draw_samples(sample_count_max);
   measured.cost.sample_seconds = seconds_since(draw_start) / sample_count;
   return measured;
 }

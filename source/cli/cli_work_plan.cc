@@ -147,7 +147,12 @@ WorkPlan read_plan(const std::filesystem::path &path)
 void write_plan(const std::filesystem::path &path, const WorkPlan &plan)
 {
   json document = to_json(plan);
-  document["id"] = plan.id();
+  try {
+    document["id"] = plan.id();
+  }
+  catch (const json::type_error &) {
+    throw std::runtime_error(path.string() + ": cannot be written: a name of a scene or of its pictures is not UTF-8");
+  }
   write_json(path, document, 1);
 }
 

@@ -99,6 +99,7 @@ double add_parts(WorkPlan &plan, const WorkOfScene &work, double target_seconds)
 
 /** \throws std::runtime_error naming the file and the reason: unreadable, or edited since it was written */
 [[nodiscard]] WorkPlan read_plan(const std::filesystem::path &path);
+/** \throws std::runtime_error naming the file, also if a text is not UTF-8 */
 void write_plan(const std::filesystem::path &path, const WorkPlan &plan);
 
 /** The files that \a part writes. */

@@ -8,6 +8,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -77,7 +78,11 @@ TEST_F(FarmTest, PartsOfFramesAreThePicturesOfOneProcess)
   fs::rename(folder / "f_4.exr", folder / "f_4.kept");
   fs::rename(folder / "f_4.exr.link", folder / "f_4.exr");
   EXPECT_NE(run("merge --plan jobs.json").err.find("part 0: f_4.exr: is no regular file"), std::string::npos);
-  EXPECT_EQ(run("render --part jobs.json:0").status, 5);
+  const Finished full = run("render --part jobs.json:0");
+  EXPECT_EQ(full.status, 5);
+  const nlohmann::json failed = nlohmann::json::parse(full.out, nullptr, false);
+  EXPECT_EQ(failed["status"], "failed") << full.out;
+  EXPECT_EQ(failed["pictures"], 1) << "it was drawn before the disk was full";
   fs::rename(folder / "f_4.kept", folder / "f_4.exr");
   EXPECT_EQ(run("merge --plan jobs.json").status, 0);
   for (const std::string frame : {"2", "4", "6", "8"}) {
@@ -132,6 +137,29 @@ TEST_F(FarmTest, APlanIsOfOneSceneAndOneProgram)
   EXPECT_NE(changed.err.find("moving.gltf: has changed since the plan was made"), std::string::npos) << changed.err;
 }
 
+TEST_F(FarmTest, APlanKeepsAllOptions)
+{
+  ASSERT_EQ(run(plan + std::string("--frames 1 --seconds-per-frame 1 --animation leave --animation all")).status, 0);
+  const nlohmann::json document = nlohmann::json::parse(read("jobs.json"), nullptr, false);
+  const std::vector<std::string> arguments = document["arguments"];
+  EXPECT_EQ(std::ranges::count(arguments, "--animation=leave"), 1);
+  EXPECT_EQ(std::ranges::count(arguments, "--animation=all"), 1);
+  EXPECT_EQ(render_part(0)["status"], "done");
+}
+
+TEST_F(FarmTest, NoTwoScenesOfAPlanHaveOnePicture)
+{
+  fs::create_directories(folder / "other");
+  fs::copy(folder / "moving.gltf", folder / "other/moving.gltf");
+  const std::string several = "plan moving.gltf other/moving.gltf --seconds-per-frame 1 -o jobs.json --pictures ";
+  const Finished same = run(several + "{scene}_0.exr");
+  EXPECT_EQ(same.status, 2);
+  EXPECT_NE(same.err.find("moving_0.exr"), std::string::npos) << same.err;
+  EXPECT_FALSE(fs::exists(folder / "jobs.json"));
+  EXPECT_EQ(run(plan + std::string("--frames 1 --seconds-per-frame 1 --pictures missing/f.exr")).status, 1)
+      << "each part would fail";
+}
+
 TEST_F(FarmTest, AnEarlyEndLeavesACheckpointThatIsJoinedWithTheRest)
 {
   const std::string whole = "render moving.gltf --size 64x36 --samples 1000 ";
@@ -181,6 +209,12 @@ TEST_F(FarmTest, TransientFailuresHaveAStatusOfTheirOwn)
   fs::create_symlink("/dev/full", folder / "full.exr");
   EXPECT_EQ(run(render + "full.exr").status, 5);
   EXPECT_EQ(run(render + "missing/f.exr").status, 1);
+  // A picture is written while the next is drawn.
+  for (const std::string frame : {"0", "1", "2"}) {
+    fs::create_symlink("/dev/full", folder / ("s_" + frame + ".exr"));
+    EXPECT_EQ(run(render + "s_#.exr --frames 0-2 --fps 10").status, 5) << frame;
+    fs::remove(folder / ("s_" + frame + ".exr"));
+  }
   EXPECT_EQ(run("render missing.gltf -o f.exr").status, 1);
   setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
   const Finished without_device = run(render + "f.exr --backend gl");

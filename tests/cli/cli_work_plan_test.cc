@@ -157,6 +157,18 @@ TEST(WorkPlanTest, FramesOfAPlanAreChecked)
   std::filesystem::remove(path);
 }
 
+TEST(WorkPlanTest, NamesOfAPlanAreUtf8)
+{
+  try {
+    write_plan("plan.json", {.program = "gnomon", .folder = ".", .scenes = {{"w\xE4lk.glb", "f", "f.exr"}}});
+    FAIL();
+  }
+  catch (const std::runtime_error &error) {
+    EXPECT_EQ(std::string(error.what()).rfind("plan.json: cannot be written: ", 0), 0U) << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists("plan.json"));
+}
+
 TEST(WorkPlanTest, APlanIsReadAsItWasWrittenAndRefusedWhenEdited)
 {
   const std::filesystem::path path =
