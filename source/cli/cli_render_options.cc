@@ -264,14 +264,15 @@ static CLI::Option *add_samples_option(CLI::App &command, int &samples)
   return option;
 }
 
-void add_render_options(CLI::App &command, RenderOptions &options)
+/** The part of settings that is all of them. */
+constexpr auto whole_part = [](auto &settings) -> auto &
 {
-  const auto whole = [](auto &settings) -> auto &
-  {
-    return settings;
-  };
-  command.add_option("scene", options.scenes, "glTF 2.0 file, or several whose pictures have {scene} in their names");
+  return settings;
+};
 
+/** \return the option --samples */
+static CLI::Option *add_picture_options(CLI::App &command, RenderOptions &options)
+{
   command.option_defaults()->group("Picture");
   command.add_option("-o,--output", options.output,
                      "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform; {scene} in the "
@@ -284,10 +285,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                   "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
       ->check(CLI::Range(1e-3, 1e9));
   SettingOptions<eevee::Settings> settings(setting_defaults());
-  settings.take<eevee::Settings>(whole, [](std::string_view option) { return option != "samples"; });
+  settings.take<eevee::Settings>(whole_part, [](std::string_view option) { return option != "samples"; });
   settings.add_to(command, "Picture", options.changes);
   SettingOptions<render_scene::Display> display;
-  display.take<render_scene::Display>(whole);
+  display.take<render_scene::Display>(whole_part);
   display.add_to(command, "Picture", options.display_changes);
   command.add_option(
       "--debug", options.debug,
@@ -297,19 +298,22 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       "from red (as large as 4 pixels) through green (a pixel) to blue (a quarter)");
   command.add_option("--aov", options.aov,
                      fmt::format("Layers of the EXR beside the picture, separated by commas: {}", aov_names()));
+  return samples;
+}
 
-  SettingOptions<eevee::Settings> shadows(setting_defaults());
-  shadows.take<eevee::ShadowSettings>([](auto &all) -> auto & { return all.shadow; });
-  shadows.add_to(command, "Shadows", options.changes);
-
+static void add_scene_options(CLI::App &command, RenderOptions &options)
+{
   command.option_defaults()->group("Scene");
   SettingOptions<gltf::ImportOptions> import;
-  import.take<gltf::ImportOptions>(whole);
+  import.take<gltf::ImportOptions>(whole_part);
   import.add_to(command, "Scene", options.import_changes);
   add_only_below_option(command, options.only_below);
   add_world_options(command, options.world);
   add_background_option(command, options.background);
+}
 
+static void add_animation_options(CLI::App &command, RenderOptions &options)
+{
   command.option_defaults()->group("Animation");
   CLI::Option *frames =
       command.add_option("--frames", options.frames.range,
@@ -331,7 +335,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command
       .add_flag("--resume", options.frames.is_resumed, "Skip frames whose files are complete and have the same size")
       ->needs(frames);
+}
 
+static void add_part_and_choice_options(CLI::App &command, RenderOptions &options)
+{
   command.option_defaults()->group("Parts of a picture");
   command.add_option("--sample-range", options.sample_range,
                      "Draw only the samples A-B of --samples, counted from 0; `gnomon merge` joins the parts");
@@ -350,7 +357,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->check(CLI::Range(1e-3, 1e9));
   command.add_option("--report", options.choice.report_folder,
                      "Folder of gnomon report to choose from (default: render a pilot)");
+}
 
+static void add_report_options(CLI::App &command, RenderOptions &options)
+{
   command.option_defaults()->group("Reports and measurement");
   command.add_flag("--explain", options.is_explained, "Print the parts of the frame, and the parts that were left out");
   command.add_option("--json", options.json,
@@ -365,7 +375,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command.add_flag("--redraw-shadows", options.redraws_shadows,
                    "With --repeat: draw the shadows of each picture anew, as after an edit of the scene");
   add_backend_option(command, options.backend, "record without a driver and draw nothing");
+}
 
+static void add_farm_options(CLI::App &command, RenderOptions &options)
+{
   command.option_defaults()->group("Farms");
   command.add_option("--part", options.part,
                      "PLAN.json:K: render part K of a plan of `gnomon plan`, unless it is complete, with the plan's "
@@ -378,7 +391,20 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       "--checkpoint", options.has_checkpoint,
       "If the command ends early, write the samples drawn so far to OUT.checkpoint.exr for `gnomon merge`");
   command.add_flag("--progress", options.has_progress_lines, "Print lines such as PROGRESS 12.5% on stderr");
+}
 
+void add_render_options(CLI::App &command, RenderOptions &options)
+{
+  command.add_option("scene", options.scenes, "glTF 2.0 file, or several whose pictures have {scene} in their names");
+  CLI::Option *samples = add_picture_options(command, options);
+  SettingOptions<eevee::Settings> shadows(setting_defaults());
+  shadows.take<eevee::ShadowSettings>([](auto &all) -> auto & { return all.shadow; });
+  shadows.add_to(command, "Shadows", options.changes);
+  add_scene_options(command, options);
+  add_animation_options(command, options);
+  add_part_and_choice_options(command, options);
+  add_report_options(command, options);
+  add_farm_options(command, options);
   command.footer(exclusions_text());
   command.parse_complete_callback([&options, &command, samples] {
     check_exclusions(command);

@@ -357,6 +357,55 @@ std::vector<std::optional<shader_check::CheckTarget>> targets_of(const ShaderMan
   return targets.empty() ? std::vector<std::optional<shader_check::CheckTarget>>{std::nullopt} : targets;
 }
 
+/** A job for each program and target. \a options: those without a target. All arguments must outlive the jobs. */
+std::vector<ShaderJob> jobs_of(const ShaderManifest &project, const gpu::ShaderFiles &files,
+                               const shader_check::ProgramOptions &options, const CheckArguments &arguments)
+{
+  std::vector<ShaderJob> jobs;
+  for (const ShaderManifest::Entry &entry : project.entries) {
+    const shader_check::Program &program = entry.program;
+    for (const std::optional<shader_check::CheckTarget> target : targets_of(entry, arguments.target)) {
+      shader_check::ProgramOptions job = options;
+      job.target = target;
+      const bool has_output = !arguments.output.empty();
+      const auto check = [&program, &files, job, has_output] {
+        shader_check::ProgramCheck result = shader_check::check_program(program, files, job);
+        if (!has_output) {
+          result.spirv.clear();
+        }
+        return result;
+      };
+      std::string key =
+          fmt::format("{}\n{}\n{}\n{}\n", target ? int(*target) : -1, has_output, job.is_strict, program.name);
+      for (const shader_check::Program::File &file : program.files) {
+        key += fmt::format("file {} {}\n", int(file.stage), file.path);
+      }
+      key += text_of(program.defines) + text_of(job.include_folders) + text_of(job.features) + text_of(job.levels);
+      jobs.push_back({check, program.name, program.files.front().path,
+                      target.value_or(shader_check::CheckTarget::OpenGl), std::move(key)});
+    }
+  }
+  return jobs;
+}
+
+/** Writes --depfile: what \a checks have read. */
+void write_dependencies(std::span<const shader_check::ProgramCheck> checks, const CheckArguments &arguments)
+{
+  std::vector<std::string> read;
+  if (!arguments.manifest.empty()) {
+    read.push_back(arguments.manifest);
+  }
+  for (const shader_check::ProgramCheck &check : checks) {
+    for (const std::string &path : check.files) {
+      if (std::ranges::find(read, path) == read.end()) {
+        read.push_back(path);
+      }
+    }
+  }
+  write_depfile(arguments.depfile, arguments.depfile_target.empty() ? arguments.output : arguments.depfile_target,
+                read);
+}
+
 /** Checks FILES, or the programs of --manifest. */
 ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
 {
@@ -383,51 +432,18 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   // The levels of the command line are read last and take precedence.
   read_levels(project.levels, options.levels, options.is_strict);
   read_levels(arguments.levels, options.levels, options.is_strict);
-  std::vector<ShaderJob> jobs;
-  std::set<std::string_view> names;
-  for (const ShaderManifest::Entry &entry : project.entries) {
-    const shader_check::Program &program = entry.program;
-    names.insert(program.name);
-    for (const std::optional<shader_check::CheckTarget> target : targets_of(entry, arguments.target)) {
-      shader_check::ProgramOptions job = options;
-      job.target = target;
-      const bool has_output = !arguments.output.empty();
-      const auto check = [&program, &files, job, has_output] {
-        shader_check::ProgramCheck result = shader_check::check_program(program, files, job);
-        if (!has_output) {
-          result.spirv.clear();
-        }
-        return result;
-      };
-      std::string key =
-          fmt::format("{}\n{}\n{}\n{}\n", target ? int(*target) : -1, has_output, job.is_strict, program.name);
-      for (const shader_check::Program::File &file : program.files) {
-        key += fmt::format("file {} {}\n", int(file.stage), file.path);
-      }
-      key += text_of(program.defines) + text_of(job.include_folders) + text_of(job.features) + text_of(job.levels);
-      jobs.push_back({check, program.name, program.files.front().path,
-                      target.value_or(shader_check::CheckTarget::OpenGl), std::move(key)});
-    }
-  }
+  const std::vector<ShaderJob> jobs = jobs_of(project, files, options, arguments);
   std::vector<shader_check::ProgramCheck> checks;
   ShaderReport report = report_of(jobs, files, arguments, &checks);
   if (!arguments.output.empty() && !report.has_errors()) {
     write_output(project.entries, checks, arguments);
   }
   if (!arguments.depfile.empty()) {
-    std::vector<std::string> read;
-    if (!arguments.manifest.empty()) {
-      read.push_back(arguments.manifest);
-    }
-    for (const shader_check::ProgramCheck &check : checks) {
-      for (const std::string &path : check.files) {
-        if (std::ranges::find(read, path) == read.end()) {
-          read.push_back(path);
-        }
-      }
-    }
-    write_depfile(arguments.depfile, arguments.depfile_target.empty() ? arguments.output : arguments.depfile_target,
-                  read);
+    write_dependencies(checks, arguments);
+  }
+  std::set<std::string_view> names;
+  for (const ShaderManifest::Entry &entry : project.entries) {
+    names.insert(entry.program.name);
   }
   report.program_count = names.size() + others.program_count;
   report.variant_count = project.entries.size() + others.variant_count;

@@ -220,6 +220,58 @@ void reorder(std::vector<Value> &values, std::span<const std::size_t> order)
   values = std::move(reordered);
 }
 
+/** Number of parts into which an edge of a triangle is divided, which is as long as \a uv_edge of its texture's edge.
+ */
+double divisions(double uv_edge)
+{
+  return std::clamp(std::ceil(uv_edge / EmissiveSurfaces::patch_edge_max), 1.0, double(divisions_max));
+}
+
+/** The objects that emit light. \a images must outlive the result. */
+std::vector<Emitter> emitters_of(const Scene &scene, std::span<const Object> objects, ImageCache &images)
+{
+  std::vector<Emitter> emitters;
+  for (const Object &object : objects) {
+    const Mesh &mesh = scene.meshes()[object.mesh];
+    const Material &material = scene.material_of(mesh);
+    if (mesh.topology != Topology::Triangles || !may_emit(material)) {
+      continue;
+    }
+    Emitter emitter{object, mesh, material, SlotLookup(scene, mesh, material.emissive_texture, images),
+                    SlotLookup(scene, mesh, material.base_color_texture, images)};
+    // As in pictures, a surface whose emission texture is missing does not emit.
+    if (!material.emissive_texture || emitter.emission.has_image()) {
+      emitters.push_back(emitter);
+    }
+  }
+  return emitters;
+}
+
+/** Factor of divisions() for which there are at most patch_count_max patches, if there are not more triangles. */
+double division_scale(std::span<const Emitter> emitters)
+{
+  double count = 0.0;
+  for (const Emitter &emitter : emitters) {
+    for (std::size_t first = 0; first + 2 < emitter.mesh.indices.size(); first += 3) {
+      const double edge = divisions(emitter.uv_edge(first));
+      count += edge * edge;
+    }
+  }
+  return std::min(std::sqrt(double(EmissiveSurfaces::patch_count_max) / std::max(count, 1.0)), 1.0);
+}
+
+/** Mean over \a part of triangle \a first. */
+glm::vec3 mean_radiance(const Emitter &emitter, std::size_t first, const std::array<glm::dvec3, 3> &part,
+                        int lookup_count)
+{
+  glm::dvec3 sum(0.0);
+  for_each_part(lookup_count, [&](const std::array<glm::dvec3, 3> &lookup) {
+    const glm::dvec3 middle = (lookup[0] + lookup[1] + lookup[2]) / 3.0;
+    sum += glm::dvec3(emitter.radiance(first, middle.x * part[0] + middle.y * part[1] + middle.z * part[2]));
+  });
+  return glm::min(glm::vec3(sum / double(lookup_count * lookup_count)), EmissiveSurfaces::radiance_max);
+}
+
 }  // namespace
 
 bool has_emission(const Scene &scene)
@@ -266,30 +318,8 @@ EmissionState emission_state(const Scene &scene)
 EmissiveSurfaces::EmissiveSurfaces(const Scene &scene, std::span<const Object> objects)
 {
   ImageCache images(scene);
-  std::vector<Emitter> emitters;
-  double count = 0.0;
-  const auto divisions = [](double uv_edge) {
-    return std::clamp(std::ceil(uv_edge / EmissiveSurfaces::patch_edge_max), 1.0, double(divisions_max));
-  };
-  for (const Object &object : objects) {
-    const Mesh &mesh = scene.meshes()[object.mesh];
-    const Material &material = scene.material_of(mesh);
-    if (mesh.topology != Topology::Triangles || !may_emit(material)) {
-      continue;
-    }
-    Emitter emitter{object, mesh, material, SlotLookup(scene, mesh, material.emissive_texture, images),
-                    SlotLookup(scene, mesh, material.base_color_texture, images)};
-    // As in pictures, a surface whose emission texture is missing does not emit.
-    if (material.emissive_texture && !emitter.emission.has_image()) {
-      continue;
-    }
-    for (std::size_t first = 0; first + 2 < mesh.indices.size(); first += 3) {
-      const double edge = divisions(emitter.uv_edge(first));
-      count += edge * edge;
-    }
-    emitters.push_back(emitter);
-  }
-  const double scale = std::min(std::sqrt(double(patch_count_max) / std::max(count, 1.0)), 1.0);
+  const std::vector<Emitter> emitters = emitters_of(scene, objects, images);
+  const double scale = division_scale(emitters);
 
   std::vector<double> weights;
   Bounds bounds;
@@ -311,12 +341,7 @@ EmissiveSurfaces::EmissiveSurfaces(const Scene &scene, std::span<const Object> o
       const double texels = emitter.emission.has_image() ? uv_edge / part_count * emitter.emission.size() : lookups_max;
       const int lookup_count = is_varying ? std::clamp(int(std::min(std::ceil(texels), 1e6)), 1, lookups_max) : 1;
       for_each_part(part_count, [&](const std::array<glm::dvec3, 3> &part) {
-        glm::dvec3 sum(0.0);
-        for_each_part(lookup_count, [&](const std::array<glm::dvec3, 3> &lookup) {
-          const glm::dvec3 middle = (lookup[0] + lookup[1] + lookup[2]) / 3.0;
-          sum += glm::dvec3(emitter.radiance(first, middle.x * part[0] + middle.y * part[1] + middle.z * part[2]));
-        });
-        const glm::vec3 radiance = glm::min(glm::vec3(sum / double(lookup_count * lookup_count)), radiance_max);
+        const glm::vec3 radiance = mean_radiance(emitter, first, part, lookup_count);
         const double weight = area * (double(radiance.r) + double(radiance.g) + double(radiance.b));
         if (!(weight > 0.0)) {
           return;

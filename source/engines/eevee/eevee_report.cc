@@ -245,92 +245,91 @@ FrameNode draw_nodes(const ReportSource &source)
   return node;
 }
 
-}  // namespace
-
-Report Inspection::report() const
+std::vector<std::string> warnings_of(const ReportSource &source)
 {
-  const Data &data = engine_data();
-  render_scene::RenderScene &scene = engine_.scene_;
-  const ShaderCache &shaders = *engine_.shaders_;
-  const Settings &settings = engine_.settings_;
-  Report report;
-  if (!data.synced_picture) {
-    report.tree = {.what = "frame", .why = "the viewport was never synced"};
-    return report;
-  }
-  const SharedData &shared = *data.shared;
-  const Lamps &lamps = shared.lights.plan().lamps;
-  const SceneShadows &shadows = shared.shadows;
-  report.warnings = lamps.warnings;
-  report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
-  if (settings.shadow.is_fitted_to_depth && has_surfaces_without_depth(scene.scene())) {
-    report.warnings.emplace_back(
+  const render_scene::RenderScene &render_scene = source.render_scene;
+  const scene::Scene &scene = source.scene();
+  std::vector<std::string> warnings = source.data.shared->lights.plan().lamps.warnings;
+  const auto add = [&](const std::vector<std::string> &lines) {
+    warnings.insert(warnings.end(), lines.begin(), lines.end());
+  };
+  add(source.data.shared->shadows.warnings());
+  if (source.settings.shadow.is_fitted_to_depth && has_surfaces_without_depth(scene)) {
+    warnings.emplace_back(
         "cascades are not fitted to depths: blended and transmissive materials receive shadows, and are drawn later");
   }
-  for (std::string &line : surface_function_warnings(scene.scene(), shaders)) {
-    report.warnings.push_back(std::move(line));
-  }
-  for (std::string &line : scene.scene().stale_references()) {
-    report.warnings.push_back(std::move(line));
-  }
+  add(surface_function_warnings(scene, source.shaders));
+  add(scene.stale_references());
   std::set<scene::Handle<scene::Mesh>> meshes;
-  for (const draw::ObjectIndex object : data.surfaces.objects()) {
-    const scene::Handle<scene::Mesh> handle = scene.object(object).mesh;
+  for (const draw::ObjectIndex object : source.data.surfaces.objects()) {
+    const scene::Handle<scene::Mesh> handle = render_scene.object(object).mesh;
     if (!meshes.insert(handle).second) {
       continue;
     }
     // The objects are those of the last sync, and the mesh may have been removed since.
-    const scene::Mesh *mesh = scene.scene().meshes().find(handle);
+    const scene::Mesh *mesh = scene.meshes().find(handle);
     for (const scene::TextureInput &input : scene::texture_inputs) {
-      const std::string why =
-          mesh ? why_no_texture(*mesh, input, scene.scene().material_of(*mesh).*input.slot) : std::string();
+      const std::string why = mesh ? why_no_texture(*mesh, input, scene.material_of(*mesh).*input.slot) : std::string();
       if (!why.empty()) {
-        report.warnings.push_back(
-            fmt::format("mesh '{}': {}; its material's {} is not drawn", mesh->name, why, input.name));
+        warnings.push_back(fmt::format("mesh '{}': {}; its material's {} is not drawn", mesh->name, why, input.name));
       }
     }
   }
   meshes.clear();
-  for (const scene::Object &object : scene.scene().objects()) {
-    const scene::Mesh *mesh = scene.scene().meshes().find(object.mesh);
-    if (mesh && !scene.meshes().has_shape(object.mesh, *mesh) && meshes.insert(object.mesh).second) {
-      report.warnings.push_back(
+  for (const scene::Object &object : scene.objects()) {
+    const scene::Mesh *mesh = scene.meshes().find(object.mesh);
+    if (mesh && !render_scene.meshes().has_shape(object.mesh, *mesh) && meshes.insert(object.mesh).second) {
+      warnings.push_back(
           fmt::format("mesh '{}': the host has named no buffers of it, so that it is not drawn", mesh->name));
     }
   }
-  report.limits = lamps.limits;
-  report.limits.insert(report.limits.end(), shadows.limits().begin(), shadows.limits().end());
+  return warnings;
+}
+
+std::vector<std::string> limits_of(const Data &data)
+{
+  std::vector<std::string> limits = data.shared->lights.plan().lamps.limits;
+  const std::vector<std::string> &of_shadows = data.shared->shadows.limits();
+  limits.insert(limits.end(), of_shadows.begin(), of_shadows.end());
   if (data.blend.ordered_count() > render_scene::blend_order_exact_max) {
-    report.limits.push_back(
-        fmt::format("{} blended objects are in the view: more than {} are ordered by distance alone",
-                    data.blend.ordered_count(), render_scene::blend_order_exact_max));
+    limits.push_back(fmt::format("{} blended objects are in the view: more than {} are ordered by distance alone",
+                                 data.blend.ordered_count(), render_scene::blend_order_exact_max));
   }
-  report.shadow_counters = data.shadows.counters();
-  report.pass_recordings = data.pass_recordings;
+  return limits;
+}
+
+int lost_shadow_count(const ReportSource &source)
+{
+  const Lamps &lamps = source.data.shared->lights.plan().lamps;
+  int count = 0;
   for (int i = 0; i < lamps.light_count(); i++) {
-    const scene::PlacedLamp &lamp = shared.lights.plan().placed[lamps.lamp_index[std::size_t(i)]];
-    const bool is_asked_for = shadow_kind(lamp, settings.shadow) != scene::ShadowKind::None;
-    report.lost_shadow_count += is_asked_for && lamps.lights[std::size_t(i)].shadow_kind == SHADOW_NONE ? 1 : 0;
+    const scene::PlacedLamp &lamp = source.data.shared->lights.plan().placed[lamps.lamp_index[std::size_t(i)]];
+    const bool is_asked_for = shadow_kind(lamp, source.settings.shadow) != scene::ShadowKind::None;
+    count += is_asked_for && lamps.lights[std::size_t(i)].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
+  return count;
+}
 
-  const ReportSource source{scene, shaders, settings, data, viewport_};
-  auto [targets, blocks] = resource_nodes(source);
-  report.tree = folder("frame", "the picture", "",
-                       {program_nodes(source), pass_nodes(source), std::move(targets), std::move(blocks),
-                        mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
-
+std::vector<FramePart> frame_parts(const ReportSource &source)
+{
+  const Data &data = source.data;
+  const Settings &settings = source.settings;
+  const SharedData &shared = *data.shared;
+  const SceneShadows &shadows = shared.shadows;
+  const int light_count = shared.lights.plan().lamps.light_count();
+  std::vector<FramePart> parts;
   const auto part = [&](std::string what, bool is_made, std::string why, std::string why_not) {
-    report.parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
+    parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
   };
   const Feature f = data.features;
   const bool is_recorded = data.is_recorded;
   const std::string no_shadow = settings.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   const auto why_not = [&](std::string reason) { return is_recorded ? std::move(reason) : nothing_seen; };
-  part("light_block", bool(shared.lights.block()), fmt::format("{} lights", lamps.light_count()),
+  part("light_block", bool(shared.lights.block()), fmt::format("{} lights", light_count),
        !has(f, Feature::Light)          ? "no lamp gives light"
        : has(f, Feature::LightClusters) ? "the lights are in light_texture"
                                         : nothing_seen);
-  part("light_texture", bool(shared.lights.texture()), fmt::format("{} lights", lamps.light_count()),
+  part("light_texture", bool(shared.lights.texture()), fmt::format("{} lights", light_count),
        has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
   const bool has_emission = shared.lights.emission().surfaces() != nullptr;
   part("light of emissive surfaces", has_emission,
@@ -353,8 +352,8 @@ Report Inspection::report() const
     part(pass.pass->name(), !pass.pass->is_empty(), std::string(pass.purpose),
          why_not(std::string(pass.why_empty(data.state(settings)))));
   }
-  part("base colour textures", scene.images().count() > 0,
-       fmt::format("{} images that materials look up", scene.images().count()),
+  part("base colour textures", source.render_scene.images().count() > 0,
+       fmt::format("{} images that materials look up", source.render_scene.images().count()),
        why_not("no lit or cut out material has one"));
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? why_not("every material is Lambertian") : "no lamp gives light");
@@ -367,7 +366,31 @@ Report Inspection::report() const
                                   : fmt::format("{} samples a pixel", settings.sample_count),
        nothing_seen);
   part("tonemap", data.output.is_recorded(), "a target was given", data.output.target() ? nothing_seen : no_target);
-  part("programs", shaders.size() > 0, fmt::format("{} programs", shaders.size()), nothing_seen);
+  part("programs", source.shaders.size() > 0, fmt::format("{} programs", source.shaders.size()), nothing_seen);
+  return parts;
+}
+
+}  // namespace
+
+Report Inspection::report() const
+{
+  const Data &data = engine_data();
+  Report report;
+  if (!data.synced_picture) {
+    report.tree = {.what = "frame", .why = "the viewport was never synced"};
+    return report;
+  }
+  const ReportSource source{engine_.scene_, *engine_.shaders_, engine_.settings_, data, viewport_};
+  report.warnings = warnings_of(source);
+  report.limits = limits_of(data);
+  report.lost_shadow_count = lost_shadow_count(source);
+  report.shadow_counters = data.shadows.counters();
+  report.pass_recordings = data.pass_recordings;
+  auto [targets, blocks] = resource_nodes(source);
+  report.tree = folder("frame", "the picture", "",
+                       {program_nodes(source), pass_nodes(source), std::move(targets), std::move(blocks),
+                        mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
+  report.parts = frame_parts(source);
   return report;
 }
 

@@ -202,22 +202,54 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   }
 }
 
-/** Update the view, the texture and the passes of the depth camera as far as their inputs changed. */
-void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects)
+/** The view of the depth camera: that of the settings, or of the first lamp that has one. */
+static std::optional<draw::View> depth_view(const render_scene::RenderScene &scene, const Settings &settings)
 {
-  std::optional<draw::View> view;
-  if (settings_.has_shadow && settings_.depth_camera) {
-    view = render_scene::view_of(*settings_.depth_camera, settings_.depth_size_px, scene_.origin_ws());
+  if (settings.has_shadow && settings.depth_camera) {
+    return render_scene::view_of(*settings.depth_camera, settings.depth_size_px, scene.origin_ws());
   }
-  else if (settings_.has_shadow) {
+  if (settings.has_shadow) {
     // Lamps and bounds are already relative to the origin of the render scene.
-    for (const scene::PlacedLamp &lamp : scene_.lamps()) {
-      if (const auto camera = depth_camera_of(lamp, scene_.bounds())) {
-        view = render_scene::view_of(*camera, settings_.depth_size_px);
-        break;
+    for (const scene::PlacedLamp &lamp : scene.lamps()) {
+      if (const auto camera = depth_camera_of(lamp, scene.bounds())) {
+        return render_scene::view_of(*camera, settings.depth_size_px);
       }
     }
   }
+  return std::nullopt;
+}
+
+/** Record the casters among \a objects. */
+void Engine::record_casters(gpu::Device &device, std::span<const draw::ObjectIndex> objects)
+{
+  DepthCamera &camera = *depth_camera_;
+  camera.casters.emplace("unlit depth camera", State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
+  std::map<std::pair<MaterialClass, render_scene::TextureSet>, draw::ShadingGroup *> groups;
+  for (const draw::ObjectIndex index : objects) {
+    const render_scene::RenderObject &object = scene_.object(index);
+    const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
+    if (!object.casts_shadow || mesh.topology != scene::Topology::Triangles ||
+        render_scene::lets_light_through(scene_.scene(), mesh)) {
+      continue;
+    }
+    const MaterialClass cut_out = render_scene::mask_class(scene_.scene(), mesh);
+    const render_scene::TextureSet textures = render_scene::textures_of(
+        scene_.scene(), mesh, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor);
+    draw::ShadingGroup *&group = groups[{cut_out, textures}];
+    if (!group) {
+      group = &camera.casters->group(shader(device, ShaderId::Depth, mask_features(cut_out)));
+      group->bind_uniform("view_block", camera.view_block);
+      camera.blocks.bind(*group);
+      render_scene::bind_textures(*group, scene_, cut_out, textures);
+    }
+    group->call(scene_.batch(object.mesh, render_scene::streams_of(cut_out)), index);
+  }
+}
+
+/** Update the view, the texture and the passes of the depth camera as far as their inputs changed. */
+void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects)
+{
+  const std::optional<draw::View> view = depth_view(scene_, settings_);
   if (!view) {
     depth_camera_.reset();
     return;
@@ -247,27 +279,7 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
     return;
   }
   camera.recorded = {};
-  camera.casters.emplace("unlit depth camera", State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
-  std::map<std::pair<MaterialClass, render_scene::TextureSet>, draw::ShadingGroup *> groups;
-  for (const draw::ObjectIndex index : objects) {
-    const render_scene::RenderObject &object = scene_.object(index);
-    const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
-    if (!object.casts_shadow || mesh.topology != scene::Topology::Triangles ||
-        render_scene::lets_light_through(scene_.scene(), mesh)) {
-      continue;
-    }
-    const MaterialClass cut_out = render_scene::mask_class(scene_.scene(), mesh);
-    const render_scene::TextureSet textures = render_scene::textures_of(
-        scene_.scene(), mesh, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor);
-    draw::ShadingGroup *&group = groups[{cut_out, textures}];
-    if (!group) {
-      group = &camera.casters->group(shader(device, ShaderId::Depth, mask_features(cut_out)));
-      group->bind_uniform("view_block", camera.view_block);
-      camera.blocks.bind(*group);
-      render_scene::bind_textures(*group, scene_, cut_out, textures);
-    }
-    group->call(scene_.batch(object.mesh, render_scene::streams_of(cut_out)), index);
-  }
+  record_casters(device, objects);
   camera.recorded = key;
 }
 

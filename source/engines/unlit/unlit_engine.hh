@@ -76,6 +76,7 @@ class Engine final : public draw::Engine {
 
   const gpu::Shader &shader(gpu::Device &device, ShaderId id, Feature features);
   void update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects);
+  void record_casters(gpu::Device &device, std::span<const draw::ObjectIndex> objects);
   void record(Data &data, gpu::Device &device);
   void record_surfaces(Data &data, gpu::Device &device);
   /** Orders the pass of blended surfaces for \a view, from back to front. */

@@ -233,6 +233,101 @@ void MeshWriter::add_positions(std::string_view key, const std::vector<glm::vec3
   attributes.add(key, std::to_string(buffer_.add_accessor(positions, Model::Float, "VEC3", limits)));
 }
 
+/** Whether one of the \a members of a material has another value than a new material. */
+template <typename... Members>
+static bool differs(const Material &material, Members... members)
+{
+  static const Material plain;
+  return (!(material.*members == plain.*members) || ...);
+}
+
+void MeshWriter::add_extension(JsonText &used, const char *name, const std::string &value)
+{
+  extensions.insert(name);
+  used.add(name, value);
+}
+
+void MeshWriter::add_layers(const Material &material, const std::string &what, JsonText &used)
+{
+  if (differs(material, &Material::coat, &Material::coat_roughness) || material.coat_texture ||
+      material.coat_roughness_texture || material.coat_normal_texture) {
+    JsonText coat;
+    coat.add("clearcoatFactor", json_number(material.coat, what));
+    coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
+    add_slot(coat, "clearcoatTexture", material.coat_texture, what);
+    add_slot(coat, "clearcoatRoughnessTexture", material.coat_roughness_texture, what);
+    add_slot(coat, "clearcoatNormalTexture", material.coat_normal_texture, what,
+             ",\"scale\":" + json_number(material.coat_normal_scale, what));
+    add_extension(used, "KHR_materials_clearcoat", coat.object());
+  }
+  if (differs(material, &Material::sheen_color, &Material::sheen_roughness) || material.sheen_color_texture ||
+      material.sheen_roughness_texture) {
+    JsonText sheen;
+    sheen.add("sheenColorFactor", json_numbers(material.sheen_color, what));
+    sheen.add("sheenRoughnessFactor", json_number(material.sheen_roughness, what));
+    add_slot(sheen, "sheenColorTexture", material.sheen_color_texture, what);
+    add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
+    add_extension(used, "KHR_materials_sheen", sheen.object());
+  }
+  if (differs(material, &Material::anisotropy, &Material::anisotropy_rotation) || material.anisotropy_texture) {
+    JsonText anisotropy;
+    anisotropy.add("anisotropyStrength", json_number(material.anisotropy, what));
+    anisotropy.add("anisotropyRotation", json_number(material.anisotropy_rotation, what));
+    add_slot(anisotropy, "anisotropyTexture", material.anisotropy_texture, what);
+    add_extension(used, "KHR_materials_anisotropy", anisotropy.object());
+  }
+}
+
+void MeshWriter::add_transmission(const Material &material, const std::string &what, JsonText &used)
+{
+  if (differs(material, &Material::transmission) || material.transmission_texture) {
+    JsonText transmission;
+    transmission.add("transmissionFactor", json_number(material.transmission, what));
+    add_slot(transmission, "transmissionTexture", material.transmission_texture, what);
+    add_extension(used, "KHR_materials_transmission", transmission.object());
+  }
+  if (differs(material, &Material::thickness, &Material::attenuation_distance, &Material::attenuation_color) ||
+      material.thickness_texture) {
+    JsonText volume;
+    volume.add("thicknessFactor", json_number(material.thickness, what));
+    add_slot(volume, "thicknessTexture", material.thickness_texture, what);
+    volume.add("attenuationColor", json_numbers(material.attenuation_color, what));
+    if (material.attenuation_distance > 0.0F) {
+      volume.add("attenuationDistance", json_number(material.attenuation_distance, what));
+    }
+    add_extension(used, "KHR_materials_volume", volume.object());
+  }
+}
+
+JsonText MeshWriter::material_extensions(const Material &material, const std::string &what)
+{
+  JsonText used;
+  const IorAndColor split = without_ior(material);
+  if (split.ior) {
+    add_extension(used, "KHR_materials_ior", "{\"ior\":" + json_number(*split.ior, what) + '}');
+  }
+  if (material.specular != 1.0F || split.specular_color != glm::vec3(1.0F) || material.specular_texture ||
+      material.specular_color_texture) {
+    JsonText specular;
+    specular.add("specularFactor", json_number(material.specular, what));
+    specular.add("specularColorFactor", json_numbers(split.specular_color, what));
+    add_slot(specular, "specularTexture", material.specular_texture, what);
+    add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
+    add_extension(used, "KHR_materials_specular", specular.object());
+  }
+  // Values that have no effect now are kept, too: another value may give them one.
+  add_layers(material, what, used);
+  add_transmission(material, what, used);
+  if (const float strength = emissive_strength(material.emissive); strength != 1.0F) {
+    add_extension(used, "KHR_materials_emissive_strength",
+                  "{\"emissiveStrength\":" + json_number(strength, what) + '}');
+  }
+  if (material.is_unlit) {
+    add_extension(used, "KHR_materials_unlit", "{}");
+  }
+  return used;
+}
+
 int MeshWriter::material(Handle<Material> handle)
 {
   if (const auto found = material_of_.find(handle); found != material_of_.end()) {
@@ -247,79 +342,7 @@ int MeshWriter::material(Handle<Material> handle)
   roughness.add("roughnessFactor", json_number(material.roughness, what));
   add_slot(roughness, "metallicRoughnessTexture", material.metallic_roughness_texture, what);
   const float strength = emissive_strength(material.emissive);
-  JsonText used;
-  const auto add_extension = [&](const char *name, const std::string &value) {
-    extensions.insert(name);
-    used.add(name, value);
-  };
-  const IorAndColor split = without_ior(material);
-  if (split.ior) {
-    add_extension("KHR_materials_ior", "{\"ior\":" + json_number(*split.ior, what) + '}');
-  }
-  if (material.specular != 1.0F || split.specular_color != glm::vec3(1.0F) || material.specular_texture ||
-      material.specular_color_texture) {
-    JsonText specular;
-    specular.add("specularFactor", json_number(material.specular, what));
-    specular.add("specularColorFactor", json_numbers(split.specular_color, what));
-    add_slot(specular, "specularTexture", material.specular_texture, what);
-    add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
-    add_extension("KHR_materials_specular", specular.object());
-  }
-  // Values that have no effect now are kept, too: another value may give them one.
-  const auto differs = [&](auto... members) {
-    static const Material plain;
-    return (!(material.*members == plain.*members) || ...);
-  };
-  if (differs(&Material::coat, &Material::coat_roughness) || material.coat_texture || material.coat_roughness_texture ||
-      material.coat_normal_texture) {
-    JsonText coat;
-    coat.add("clearcoatFactor", json_number(material.coat, what));
-    coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
-    add_slot(coat, "clearcoatTexture", material.coat_texture, what);
-    add_slot(coat, "clearcoatRoughnessTexture", material.coat_roughness_texture, what);
-    add_slot(coat, "clearcoatNormalTexture", material.coat_normal_texture, what,
-             ",\"scale\":" + json_number(material.coat_normal_scale, what));
-    add_extension("KHR_materials_clearcoat", coat.object());
-  }
-  if (differs(&Material::sheen_color, &Material::sheen_roughness) || material.sheen_color_texture ||
-      material.sheen_roughness_texture) {
-    JsonText sheen;
-    sheen.add("sheenColorFactor", json_numbers(material.sheen_color, what));
-    sheen.add("sheenRoughnessFactor", json_number(material.sheen_roughness, what));
-    add_slot(sheen, "sheenColorTexture", material.sheen_color_texture, what);
-    add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
-    add_extension("KHR_materials_sheen", sheen.object());
-  }
-  if (differs(&Material::anisotropy, &Material::anisotropy_rotation) || material.anisotropy_texture) {
-    JsonText anisotropy;
-    anisotropy.add("anisotropyStrength", json_number(material.anisotropy, what));
-    anisotropy.add("anisotropyRotation", json_number(material.anisotropy_rotation, what));
-    add_slot(anisotropy, "anisotropyTexture", material.anisotropy_texture, what);
-    add_extension("KHR_materials_anisotropy", anisotropy.object());
-  }
-  if (differs(&Material::transmission) || material.transmission_texture) {
-    JsonText transmission;
-    transmission.add("transmissionFactor", json_number(material.transmission, what));
-    add_slot(transmission, "transmissionTexture", material.transmission_texture, what);
-    add_extension("KHR_materials_transmission", transmission.object());
-  }
-  if (differs(&Material::thickness, &Material::attenuation_distance, &Material::attenuation_color) ||
-      material.thickness_texture) {
-    JsonText volume;
-    volume.add("thicknessFactor", json_number(material.thickness, what));
-    add_slot(volume, "thicknessTexture", material.thickness_texture, what);
-    volume.add("attenuationColor", json_numbers(material.attenuation_color, what));
-    if (material.attenuation_distance > 0.0F) {
-      volume.add("attenuationDistance", json_number(material.attenuation_distance, what));
-    }
-    add_extension("KHR_materials_volume", volume.object());
-  }
-  if (strength != 1.0F) {
-    add_extension("KHR_materials_emissive_strength", "{\"emissiveStrength\":" + json_number(strength, what) + '}');
-  }
-  if (material.is_unlit) {
-    add_extension("KHR_materials_unlit", "{}");
-  }
+  const JsonText used = material_extensions(material, what);
   JsonText json;
   json.add("name", json_string(material.name, what));
   json.add("pbrMetallicRoughness", roughness.object());

@@ -115,6 +115,82 @@ void Tracer::Tree::place()
   half_size = (0.5 * high - 0.5 * low) * scale;
 }
 
+void Tracer::Tree::set_bounds(const RTCBoundsFunctionArguments *arguments)
+{
+  const Tree &self = *static_cast<const Tree *>(arguments->geometryUserPtr);
+  const Corners &corners = self.triangles[arguments->primID].corners;
+  const glm::dvec3 low = (glm::min(glm::min(corners[0], corners[1]), corners[2]) - self.center) * self.scale;
+  const glm::dvec3 high = (glm::max(glm::max(corners[0], corners[1]), corners[2]) - self.center) * self.scale;
+  RTCBounds &box = *arguments->bounds_o;
+  box.lower_x = rounded_down(low.x - tree_margin);
+  box.lower_y = rounded_down(low.y - tree_margin);
+  box.lower_z = rounded_down(low.z - tree_margin);
+  box.upper_x = rounded_up(high.x + tree_margin);
+  box.upper_y = rounded_up(high.y + tree_margin);
+  box.upper_z = rounded_up(high.z + tree_margin);
+}
+
+void Tracer::Tree::intersect(const RTCIntersectFunctionNArguments *arguments)
+{
+  const Tree &self = *static_cast<const Tree *>(arguments->geometryUserPtr);
+  auto &query = *static_cast<ClosestQuery *>(arguments->context);
+  const Triangle &triangle = self.triangles[arguments->primID];
+  const std::optional<glm::dvec3> weights = line_triangle(query.sheared, triangle.corners);
+  if (!weights) {
+    return;
+  }
+  const TrianglePlane plane(triangle.corners);
+  const double rise = glm::dot(plane.normal, query.ray.direction_ws);
+  const double t = -plane.height(query.ray.origin_ws) / rise;
+  // Written so that NaN is outside the range.
+  if (!(t >= query.ray.t_min && t <= query.ray.t_max)) {
+    return;
+  }
+  if (query.best && (t > query.best->t || (t == query.best->t && arguments->primID > query.best->triangle))) {
+    return;
+  }
+  if (query.faces == Faces::Drawn && rise > 0.0 && !self.material_of(triangle).is_double_sided) {
+    return;
+  }
+  if (self.opacity_at(triangle, *weights) == 0.0) {
+    return;
+  }
+  query.best = Hit{t, arguments->primID, *weights};
+  // Boxes farther away can be skipped. Boxes at the same distance cannot: they may contain a triangle that comes
+  // first.
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  ray.tfar = std::min(ray.tfar, rounded_up((t - query.t_enter) * query.length + tree_margin));
+}
+
+void Tracer::Tree::occlude(const RTCOccludedFunctionNArguments *arguments)
+{
+  const Tree &self = *static_cast<const Tree *>(arguments->geometryUserPtr);
+  auto &query = *static_cast<BlockedQuery *>(arguments->context);
+  const Triangle &triangle = self.triangles[arguments->primID];
+  const std::optional<glm::dvec3> weights = line_triangle(query.sheared, triangle.corners);
+  if (!weights) {
+    return;
+  }
+  const TrianglePlane plane(triangle.corners);
+  const double height = plane.height(query.point);
+  if (!(std::abs(height) > plane.height_error(query.point, query.error_m + triangle.error_m))) {
+    return;
+  }
+  const glm::dvec3 &end = query.light.vector_ws;
+  const double end_height = query.light.is_direction ? glm::dot(plane.normal, end) : plane.height(end);
+  // A direction has no position error.
+  const double end_error = query.light.is_direction ? 16.0 * double_rounding * plane.edge_product * glm::length(end)
+                                                    : plane.height_error(end, triangle.error_m);
+  const bool is_between = std::abs(end_height) > end_error && (height < 0.0) != (end_height < 0.0);
+  if (is_between) {
+    query.transmission *= 1.0 - self.opacity_at(triangle, *weights);
+  }
+  if (query.transmission == 0.0) {
+    // Embree's convention for a blocked ray.
+    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = -std::numeric_limits<float>::infinity();
+  }
+}
+
 void Tracer::Tree::build()
 {
   if (triangles.empty()) {
@@ -134,81 +210,9 @@ void Tracer::Tree::build()
   rtcSetGeometryUserPrimitiveCount(geometry, unsigned(triangles.size()));
   rtcSetGeometryUserData(geometry, this);
 
-  const auto bounds = [](const RTCBoundsFunctionArguments *a) {
-    const Tree &self = *static_cast<const Tree *>(a->geometryUserPtr);
-    const Corners &corners = self.triangles[a->primID].corners;
-    const glm::dvec3 low = (glm::min(glm::min(corners[0], corners[1]), corners[2]) - self.center) * self.scale;
-    const glm::dvec3 high = (glm::max(glm::max(corners[0], corners[1]), corners[2]) - self.center) * self.scale;
-    RTCBounds &box = *a->bounds_o;
-    box.lower_x = rounded_down(low.x - tree_margin);
-    box.lower_y = rounded_down(low.y - tree_margin);
-    box.lower_z = rounded_down(low.z - tree_margin);
-    box.upper_x = rounded_up(high.x + tree_margin);
-    box.upper_y = rounded_up(high.y + tree_margin);
-    box.upper_z = rounded_up(high.z + tree_margin);
-  };
-  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
-
-  const auto intersect = [](const RTCIntersectFunctionNArguments *a) {
-    const Tree &self = *static_cast<const Tree *>(a->geometryUserPtr);
-    auto &query = *static_cast<ClosestQuery *>(a->context);
-    const Triangle &triangle = self.triangles[a->primID];
-    const std::optional<glm::dvec3> weights = line_triangle(query.sheared, triangle.corners);
-    if (!weights) {
-      return;
-    }
-    const TrianglePlane plane(triangle.corners);
-    const double rise = glm::dot(plane.normal, query.ray.direction_ws);
-    const double t = -plane.height(query.ray.origin_ws) / rise;
-    // Written so that NaN is outside the range.
-    if (!(t >= query.ray.t_min && t <= query.ray.t_max)) {
-      return;
-    }
-    if (query.best && (t > query.best->t || (t == query.best->t && a->primID > query.best->triangle))) {
-      return;
-    }
-    if (query.faces == Faces::Drawn && rise > 0.0 && !self.material_of(triangle).is_double_sided) {
-      return;
-    }
-    if (self.opacity_at(triangle, *weights) == 0.0) {
-      return;
-    }
-    query.best = Hit{t, a->primID, *weights};
-    // Boxes farther away can be skipped. Boxes at the same distance cannot: they may contain a triangle that comes
-    // first.
-    RTCRay &ray = reinterpret_cast<RTCRayHit *>(a->rayhit)->ray;
-    ray.tfar = std::min(ray.tfar, rounded_up((t - query.t_enter) * query.length + tree_margin));
-  };
+  rtcSetGeometryBoundsFunction(geometry, set_bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, intersect);
-
-  const auto occluded = [](const RTCOccludedFunctionNArguments *a) {
-    const Tree &self = *static_cast<const Tree *>(a->geometryUserPtr);
-    auto &query = *static_cast<BlockedQuery *>(a->context);
-    const Triangle &triangle = self.triangles[a->primID];
-    const std::optional<glm::dvec3> weights = line_triangle(query.sheared, triangle.corners);
-    if (!weights) {
-      return;
-    }
-    const TrianglePlane plane(triangle.corners);
-    const double height = plane.height(query.point);
-    if (!(std::abs(height) > plane.height_error(query.point, query.error_m + triangle.error_m))) {
-      return;
-    }
-    const glm::dvec3 &end = query.light.vector_ws;
-    const double end_height = query.light.is_direction ? glm::dot(plane.normal, end) : plane.height(end);
-    // A direction has no position error.
-    const double end_error = query.light.is_direction ? 16.0 * double_rounding * plane.edge_product * glm::length(end)
-                                                      : plane.height_error(end, triangle.error_m);
-    const bool is_between = std::abs(end_height) > end_error && (height < 0.0) != (end_height < 0.0);
-    if (is_between) {
-      query.transmission *= 1.0 - self.opacity_at(triangle, *weights);
-    }
-    if (query.transmission == 0.0) {
-      // Embree's convention for a blocked ray.
-      reinterpret_cast<RTCRay *>(a->ray)->tfar = -std::numeric_limits<float>::infinity();
-    }
-  };
-  rtcSetGeometryOccludedFunction(geometry, occluded);
+  rtcSetGeometryOccludedFunction(geometry, occlude);
 
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(tree, geometry);
