@@ -46,6 +46,12 @@ function(gnomon_compile_settings TARGET)
   endif()
 endfunction()
 
+# gnomon_compile_soon(TARGET): for code that lists, prints and waits for other layers. Optimising it took a third of its compile time and no
+# picture is faster for it.
+function(gnomon_compile_soon TARGET)
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # A shared library shows the names of namespace gnomon, and none of the libraries that are linked into it.
 function(gnomon_export_symbols TARGET)
   get_target_property(TYPE ${TARGET} TYPE)
