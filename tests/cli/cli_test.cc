@@ -8,6 +8,7 @@
 #include "cli_values.hh"
 
 #include "eevee_frame_text.hh"
+#include "eevee_picture_layers.hh"
 
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <random>
@@ -99,6 +102,26 @@ TEST_F(CliTest, LayersThatThereAreNotAreNamedWithThoseThatThereAre)
   EXPECT_EQ(lamp.status, 1);
   EXPECT_NE(lamp.err.find("no lamp 'NOBODY'; visible lamps: POINT, SUN"), std::string::npos) << lamp.err;
   EXPECT_EQ(run(render + "light,visibility.SUN,crypto_object").status, 0);
+}
+
+TEST_F(CliTest, EachLayerOfAFileIsAcceptedAndDescribed)
+{
+  std::ifstream file(GNOMON_SOURCE "/doc/layers.md");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  std::string all;
+  for (const eevee::PictureLayer &layer : eevee::picture_layers) {
+    const std::string name(layer.name);
+    const bool is_in_files = layer.source != eevee::LayerSource::Ids;
+    EXPECT_EQ(page.find('`' + name + '`') != std::string::npos, is_in_files) << name;
+    if (is_in_files) {
+      all += (all.empty() ? "" : ",") + name;
+    }
+    if (is_in_files && !layer.channels.empty() && layer.source != eevee::LayerSource::Picture) {
+      const std::string channel = name + (layer.has_lamps() ? ".LAMP." : ".") + layer.channels.front();
+      EXPECT_NE(page.find('`' + channel + '`'), std::string::npos) << channel;
+    }
+  }
+  EXPECT_EQ(run("render " + example("plaza") + " -o a.exr --backend null --size 8x8 --aov " + all).status, 0) << all;
 }
 
 // ---- Cryptomatte ----
