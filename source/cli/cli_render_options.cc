@@ -279,7 +279,7 @@ static CLI::Option *add_samples_option(CLI::App &command, int &samples)
 }
 
 /** The part of settings that is all of them. */
-constexpr auto whole = [](auto &settings) -> auto &
+constexpr auto whole_part = [](auto &settings) -> auto &
 {
   return settings;
 };
@@ -299,10 +299,10 @@ static CLI::Option *add_picture_options(CLI::App &command, RenderOptions &option
                   "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
       ->check(CLI::Range(1e-3, 1e9));
   SettingOptions<eevee::Settings> settings(setting_defaults());
-  settings.take<eevee::Settings>(whole, [](std::string_view option) { return option != "samples"; });
+  settings.take<eevee::Settings>(whole_part, [](std::string_view option) { return option != "samples"; });
   settings.add_to(command, "Picture", options.changes);
   SettingOptions<render_scene::Display> display;
-  display.take<render_scene::Display>(whole);
+  display.take<render_scene::Display>(whole_part);
   display.add_to(command, "Picture", options.display_changes);
   command.add_option(
       "--debug", options.debug,
@@ -319,7 +319,7 @@ static void add_scene_options(CLI::App &command, RenderOptions &options)
 {
   command.option_defaults()->group("Scene");
   SettingOptions<gltf::ImportOptions> import;
-  import.take<gltf::ImportOptions>(whole);
+  import.take<gltf::ImportOptions>(whole_part);
   import.add_to(command, "Scene", options.import_changes);
   add_only_below_option(command, options.only_below);
   add_world_options(command, options.world);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadows/shadows.hh"
+#include "eevee_shadow_settings.hh"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_debug.hh"
 
+#include "eevee_shaders.hh"
+#include "shadows/shadow_technique.hh"
+
 #include <algorithm>
 
 namespace gnomon::eevee {

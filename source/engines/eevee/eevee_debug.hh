@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadows/shadows.hh"
+#include "gpu_device.hh"
+
+#include <optional>
 
 namespace gnomon::eevee {
+
+class ShaderCache;
+struct ShadowLayers;
 
 /** Maximum edge of a picture of shadow layers, pixels. Larger layers are subsampled to fit. */
 inline constexpr int shadow_picture_edge_max_px = 2048;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_depth.hh"
 
+#include "shadows/shadows.hh"
+
 #include "eevee_gbuffer_shared.h"
 #include "render_surfaces.hh"
 
@@ -63,6 +65,11 @@ DepthPasses::DepthPasses(draw::ObjectBuffer &objects, const RenderBuffers &buffe
       depth_pass_cull_("depth_pass_cull", State::WriteDepth | State::DepthNearerEqual | State::CullBack, &objects),
       gbuffer_pass_("gbuffer_pass", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &objects)
 {
+}
+
+bool DepthPasses::awaits(const draw::View &view) const
+{
+  return shadows_.reads_depths() && !feedback_.is_of(view);
 }
 
 void DepthPasses::clear(const scene::Scene &scene, Feature features)

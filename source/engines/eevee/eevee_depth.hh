@@ -7,6 +7,8 @@
 
 namespace gnomon::eevee {
 
+class Shadows;
+
 /**
  * The depths of opaque objects, the G-buffer of those with deferred lighting, and that lighting: decision 0030.
  * Internal to the engine.
@@ -47,10 +49,7 @@ class DepthPasses {
     return feedback_;
   }
   /** Whether suns are fitted to depths and the host does not have the depths of \a view yet. */
-  [[nodiscard]] bool awaits(const draw::View &view) const
-  {
-    return shadows_.reads_depths() && !feedback_.is_of(view);
-  }
+  [[nodiscard]] bool awaits(const draw::View &view) const;
 
   /** Depths and G-buffer of plain objects. */
   [[nodiscard]] FrameStep gbuffer_step();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadows/shadows.hh"
+#include "shadows/shadow_visible_clusters.hh"
+
+#include "gpu_device.hh"
 
 #include <array>
 #include <optional>

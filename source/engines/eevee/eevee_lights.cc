@@ -4,6 +4,7 @@
 
 #include "eevee_material_variants.hh"
 #include "eevee_settings.hh"
+#include "shadows/scene_shadows.hh"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,6 @@
 #include "eevee_emission.hh"
 #include "eevee_lamp_points.hh"
 #include "eevee_world.hh"
-#include "shadows/shadows.hh"
 
 #include "draw_pass.hh"
 
@@ -12,6 +11,8 @@
 #include <vector>
 
 namespace gnomon::eevee {
+
+class SceneShadows;
 
 struct ResourceReport;
 

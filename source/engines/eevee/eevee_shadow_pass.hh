@@ -9,6 +9,9 @@
 
 namespace gnomon::eevee {
 
+class SceneShadows;
+class Shadows;
+
 /** The pass that draws the casters of a scene's shadows, for all lamps and viewports. Internal to the engine. */
 class ShadowPass {
  public:

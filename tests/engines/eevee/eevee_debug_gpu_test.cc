@@ -3,6 +3,7 @@
 #include "eevee_debug.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
+#include "shadows/shadows.hh"
 
 #include "eevee_octahedral_shared.h"
 
