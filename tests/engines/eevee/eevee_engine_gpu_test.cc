@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light and shadow compared with closed forms, on the driver.
+#include "eevee_light_shared.h"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "shader_check_reflection.hh"
