@@ -19,8 +19,8 @@ float mask_threshold()
 /**
  * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is the same all around it, the pixel is covered as often as
  * the texels in it: levels above 0 of a mask's texture store the covered share. At the edge of a shape that is larger than the pixel, a
- * look-up of level 0 has half of the error, and the right mean. What is the same is compared over 4 and 16 pixels: within one pixel, a
- * weight that follows the mask's own pattern would change the mean.
+ * look-up of level 0 has half of the error, and the right mean. What is the same is compared over 1 and 4 pixels, or, exactly, over 4 and
+ * 16: within one pixel, a weight that follows the mask's own pattern would change the mean.
  */
 bool is_pixel_cut_out(float mask_cutoff)
 {
@@ -37,18 +37,20 @@ bool is_pixel_cut_out(float mask_cutoff)
   bool is_open = factor * textureLod(base_color_texture, surface_uv, 0.0).a < mask_cutoff;
   // x: the level that the sampler reads, which is 0 without mip levels. y: the level by size.
   vec2 lod = textureQueryLod(base_color_texture, surface_uv);
-  // Samples are spread by a filter that is wider than a pixel, so that a few of them fall on one side of a pixel. Shares are those of twice
-  // the distance between samples, and at most of a pixel.
-  float level = lod.y + min(view.texture_lod_bias + 1.0, 0.0);
-  // The image itself, of level 0, has colors of texels that are cut out.
-  float has_levels = clamp(4.0 * (lod.y + view.texture_lod_bias) - 3.0, 0.0, 1.0);
-  if (lod.x <= 0.0 || has_levels <= 0.0 || factor < mask_cutoff) {
+  float level = lod.y + view.texture_lod_bias;
+  if (lod.x <= 0.0 || level <= 0.75 || factor < mask_cutoff) {
     return is_open;
   }
+  // The image itself, of level 0, has colors of texels that are cut out.
   float share = textureLod(base_color_texture, surface_uv, max(level, 1.0)).a;
-  float share_around = textureLod(base_color_texture, surface_uv, level + 2.0).a;
-  float share_farther = textureLod(base_color_texture, surface_uv, level + 4.0).a;
-  // The levels are rounded to 1/255.
-  float weight = has_levels * clamp(2.0 - 64.0 * abs(share_around - share_farther), 0.0, 1.0);
+  // Whether the mask is the same all around does not depend on the number of samples.
+  float share_of_pixel = textureLod(base_color_texture, surface_uv, lod.y).a;
+  float share_around = textureLod(base_color_texture, surface_uv, lod.y + 2.0).a;
+  float share_farther = textureLod(base_color_texture, surface_uv, lod.y + 4.0).a;
+  float is_fine = min(level - 1.0, 1.0) * (1.0 - 16.0 * abs(share_of_pixel - share_around));
+  // A pattern of several pixels that repeats: its levels differ by their rounding to 1/255 alone. The last levels of a texture say nothing.
+  bool has_farther = lod.y + 5.0 <= float(textureQueryLevels(base_color_texture));
+  float is_repeated = has_farther ? min(4.0 * level - 3.0, 1.0) * (2.0 - 256.0 * abs(share_around - share_farther)) : 0.0;
+  float weight = clamp(max(is_fine, is_repeated), 0.0, 1.0);
   return mix(is_open ? 0.0 : 1.0, share, weight) < mask_threshold();
 }
