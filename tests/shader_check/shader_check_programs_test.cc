@@ -8,6 +8,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 namespace gnomon::shader_check {
@@ -463,13 +464,18 @@ TEST(CheckProgram, TimeIsLinearInTheLength)
       body += fmt::format("  s += g{}(uv.x);\n", i);
     }
     text += "void main() {\n  float s = 0.0;\n" + body + "  c = vec4(s);\n}\n";
-    const double start = cpu_seconds();
-    EXPECT_EQ(messages_of(check_texts({{"x.frag", text}})), "");
-    return cpu_seconds() - start;
+    // Other programs slow down caches and cores, so that the least of three counts.
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 3; i++) {
+      const double start = cpu_seconds();
+      EXPECT_EQ(messages_of(check_texts({{"x.frag", text}})), "");
+      least = std::min(least, cpu_seconds() - start);
+    }
+    return least;
   };
-  const double first = seconds(500);
+  const double first = seconds(300);
   // Four times the length takes four times as long, or 16 times if a step is quadratic.
-  EXPECT_LT(seconds(2000), 8.0 * first);
+  EXPECT_LT(seconds(1200), 8.0 * first);
 }
 
 TEST(CheckProgram, TimeIsLinearInTheNumberOfIncludedFiles)
