@@ -131,6 +131,62 @@ void add(Hasher &hash, const scene::PlacedCamera &camera)
   add_properties(hash, camera);
 }
 
+void add(Hasher &hash, const scene::SharedTrack &track)
+{
+  hash.add(track != nullptr);
+  if (track) {
+    hash.add(track->interpolation);
+    hash.add(track->width);
+    hash.add(track->times);
+    hash.add(track->values);
+  }
+}
+
+void add(Hasher &hash, const scene::Animation &animation)
+{
+  hash.add(animation.name);
+  for (const scene::AnimatedNode &node : animation.nodes) {
+    hash.add(node.node.index);
+    hash.add(node.translation);
+    hash.add(glm::dvec4(node.rotation.x, node.rotation.y, node.rotation.z, node.rotation.w));
+    hash.add(node.scale);
+    for (const scene::SharedTrack *track :
+         {&node.translation_track, &node.rotation_track, &node.scale_track, &node.weights_track}) {
+      add(hash, *track);
+    }
+  }
+  for (const scene::AnimatedValue &value : animation.values) {
+    hash.add(value.target.index());
+    std::visit([&](const auto &target) { hash.add(target.index); }, value.target);
+    hash.add(value.property);
+    hash.add(value.slot);
+    hash.add(value.factor);
+    add(hash, value.track);
+    add(hash, value.strength_track);
+  }
+}
+
+/** The rest shape, and what deforms it. */
+void add(Hasher &hash, const scene::DeformedMesh &deformed)
+{
+  hash.add(deformed.mesh.index);
+  hash.add(deformed.node.index);
+  hash.add(deformed.positions);
+  hash.add(deformed.normals);
+  for (const scene::MorphTarget &target : deformed.targets) {
+    hash.add(target.positions);
+    hash.add(target.normals);
+    hash.add(target.tangents);
+  }
+  hash.add(deformed.skin);
+  for (const scene::JointWeights &weights : deformed.joint_weights) {
+    for (const std::uint16_t joint : weights.joints) {
+      hash.add(joint);
+    }
+    hash.add(weights.weights);
+  }
+}
+
 }  // namespace
 
 std::string scene_fingerprint(const scene::Scene &scene)
@@ -170,6 +226,20 @@ std::string scene_fingerprint(const scene::Scene &scene)
   for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
     add(hash, camera);
   }
+  for (const scene::Animation &animation : scene.animations) {
+    add(hash, animation);
+  }
+  for (const scene::Skin &skin : scene.skins) {
+    for (const scene::Handle<scene::Node> joint : skin.joints) {
+      hash.add(joint.index);
+    }
+    for (const glm::dmat4 &matrix : skin.joint_from_mesh) {
+      hash.add(matrix);
+    }
+  }
+  for (const scene::DeformedMesh &deformed : scene.deformed_meshes) {
+    add(hash, deformed);
+  }
   return hash.text();
 }
 
@@ -182,7 +252,12 @@ std::string text_fingerprint(std::string_view text)
 
 std::string program_fingerprint()
 {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
+  return file_fingerprint("/proc/self/exe");
+}
+
+std::string file_fingerprint(const std::filesystem::path &path)
+{
+  std::ifstream file(path, std::ios::binary);
   if (!file) {
     return "";
   }

@@ -324,6 +324,13 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
   return Status::Done;
 }
 
+/** \see PlannedScene::fingerprint */
+std::string planned_fingerprint(const scene::Scene &scene, const WorldOptions &world)
+{
+  std::error_code ignored;
+  return scene_fingerprint(scene) + (fs::is_regular_file(world.world, ignored) ? file_fingerprint(world.world) : "");
+}
+
 /**
  * A fingerprint of the files that make a picture, so that parts of other content are not merged. \a imported: of the
  * scene before it is posed, which differs between processors
@@ -494,8 +501,9 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     std::future<ImportedScene> next;
     try {
       ImportedScene imported = import.get();
-      if (!options.plan_id.empty() && scene_fingerprint(imported.scene) != options.planned_scene) {
-        throw std::runtime_error(fmt::format("{}: has changed since the plan was made", scenes[i].scene));
+      if (!options.plan_id.empty() && planned_fingerprint(imported.scene, options.world) != options.planned_scene) {
+        throw std::runtime_error(
+            fmt::format("{}: has changed since the plan was made, or the world has", scenes[i].scene));
       }
       if (i + 1 < scenes.size()) {
         next = start_import(scenes[i + 1], stops);
@@ -650,7 +658,7 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
 {
   const Clock::time_point start = Clock::now();
   scene::Scene scene = import_scene(options.scene, options.import_options());
-  MeasuredScene measured{scene_fingerprint(scene), {}};
+  MeasuredScene measured{planned_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
   frames.choose_animations(scene);
   frames.pose(scene, 0);

@@ -40,7 +40,7 @@ struct WorkPart {
 
 struct PlannedScene {
   std::string path{};
-  /** scene_fingerprint of the scene as it is imported. */
+  /** scene_fingerprint of the scene as it is imported, and the fingerprint of the file of --world. */
   std::string fingerprint{};
   /** The pictures, with # for the number of the frame. */
   std::string pictures{};

@@ -137,6 +137,24 @@ TEST_F(FarmTest, APlanIsOfOneSceneAndOneProgram)
   EXPECT_NE(changed.err.find("moving.gltf: has changed since the plan was made"), std::string::npos) << changed.err;
 }
 
+TEST_F(FarmTest, APlanIsOfOneAnimationAndOneWorld)
+{
+  // Light from above by a Radiance picture of one texel.
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n";
+  const auto write_world = [&](char value) { write("sky.hdr", header + std::string{value, value, value, char(128)}); };
+  write_world(100);
+  ASSERT_EQ(run(plan + std::string("--frames 0-1 --seconds-per-frame 1 --world sky.hdr")).status, 0);
+  EXPECT_EQ(render_part(0)["status"], "done");
+  fs::remove(folder / "moving_0000.exr");
+  write("moving.gltf", test::moving_triangle_gltf({10, 3, 1}));
+  EXPECT_EQ(run("render --part jobs.json:0").status, 1) << "frame 0 is the same, later frames are not";
+  write("moving.gltf", test::moving_triangle_gltf({10, 3, 0}));
+  write_world(101);
+  EXPECT_EQ(run("render --part jobs.json:0").status, 1);
+  write_world(100);
+  EXPECT_EQ(render_part(0)["status"], "done");
+}
+
 TEST_F(FarmTest, APlanKeepsAllOptions)
 {
   ASSERT_EQ(run(plan + std::string("--frames 1 --seconds-per-frame 1 --animation leave --animation all")).status, 0);
