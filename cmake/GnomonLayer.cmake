@@ -46,9 +46,9 @@ function(gnomon_compile_settings TARGET)
   endif()
 endfunction()
 
-# gnomon_compile_soon(TARGET): for code that lists, prints and waits for other layers. Optimising it took a third of its compile time and no
-# picture is faster for it.
-function(gnomon_compile_soon TARGET)
+# gnomon_optimise_less(TARGET): for code that lists and prints, and calls other layers. Full optimisation takes a third of its compile time,
+# and makes no picture faster.
+function(gnomon_optimise_less TARGET)
   target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 

@@ -285,7 +285,7 @@ struct PlannedFile {
   /** Index of WorkPlan::parts. */
   std::size_t part = 0;
   std::string name{};
-  /** As fault_of. */
+  /** The result of fault_of. */
   std::string fault{};
 };
 

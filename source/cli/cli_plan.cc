@@ -101,7 +101,7 @@ Status plan(const PlanOptions &options, const CLI::App &command)
       throw UsageError(fmt::format("--pictures '{}' does not end in .exr", render.output));
     }
     const FrameSequence frames(render.frames, render.output);
-    // Of all frames, because their names differ by the number only.
+    // The first picture stands for all frames, because their names differ by the number only.
     roles.add_output(frames.path(0), "--pictures of " + path);
     MeasuredScene measured = measure_scene(render, device.get());
     if (!device) {

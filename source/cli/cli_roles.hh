@@ -10,8 +10,8 @@
 namespace gnomon::cli {
 
 /**
- * As output::Roles. Where an output is the pipe or file of standard output, as with `--json /dev/stdout`, text for
- * people goes to stderr.
+ * Roles of the files of a command. If an output is the pipe or file of standard output, as with `--json /dev/stdout`,
+ * add_output also sends all further text for people to stderr.
  */
 class Roles : public output::Roles {
  public:

@@ -239,7 +239,7 @@ std::vector<Emitter> emitters_of(const Scene &scene, std::span<const Object> obj
     }
     Emitter emitter{object, mesh, material, SlotLookup(scene, mesh, material.emissive_texture, images),
                     SlotLookup(scene, mesh, material.base_color_texture, images)};
-    // As in pictures, a surface whose emission texture is missing does not emit.
+    // A surface whose emission texture is missing does not emit, in pictures either.
     if (!material.emissive_texture || emitter.emission.has_image()) {
       emitters.push_back(emitter);
     }

@@ -152,8 +152,8 @@ glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max)
 }
 
 /**
- * What a linear filter shows of texels of a width that are covered or not, in rows. Its value is the covered share of
- * the four texels around a point; the texels repeat.
+ * The picture of a linear filter over rows of texels, each of which is covered or not. The value at a point is the
+ * covered share of the four texels around it. The texels repeat.
  */
 class FilteredCover {
  public:
@@ -299,7 +299,7 @@ static void cover(Image &image, const std::vector<float> &parts, float cutoff)
   }
   const FilteredCover filtered(is_covered, image.width);
   const bool has_two_alphas = is_diffused || std::abs(filtered.part(0.5F) - wanted) > change_max;
-  // What lies at the cutoff.
+  // The value that is drawn at the cutoff.
   const float at = has_two_alphas ? filtered.least_of(wanted) : 0.5F;
   const float range = std::min(cutoff / at, (1.0F - cutoff) / (1.0F - at));
   const auto least = std::uint8_t(std::clamp(std::ceil(255.0F * cutoff), 1.0F, 255.0F));

@@ -14,7 +14,7 @@
  */
 namespace gnomon::eevee {
 
-/** What a layer is made from. */
+/** The data from which a layer is made. */
 enum class LayerSource {
   /** The picture itself. */
   Picture,
@@ -113,7 +113,8 @@ struct SurfaceLayers {
   [[nodiscard]] const std::vector<glm::vec4> *pixels(LayerSource source) const;
 };
 
-/** What the layers of \a names need, visible_lamps apart. Other names than those of picture_layers need nothing. */
+/** The request for the layers of \a names, without visible_lamps. Names that picture_layers does not have add nothing.
+ */
 [[nodiscard]] SurfaceRequest surface_request(std::span<const std::string> names);
 
 /**

@@ -115,7 +115,7 @@ constexpr std::array<ShaderDeclaration, 27> declarations = {{
      "eevee/eevee_adaptive_scale_frag.glsl", Feature::None, Feature::None, "means of pixels without further samples"},
 }};
 
-/** What follows from the features of a rule. */
+/** The consequence of a rule's features. */
 enum class RuleKind {
   /** A scene has all of `then`. */
   All,
