@@ -20,7 +20,7 @@ float mask_threshold()
  * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is the same all around it, the pixel is covered as often as
  * the texels in it: levels above 0 of a mask's texture store the covered share. At the edge of a shape that is larger than the pixel, a
  * look-up of level 0 has half of the error, and the right mean. A mask is the same all around if its shares over 1 and 4 pixels are alike,
- * or if those over 4 and 16 pixels are equal: a weight that varied with the mask's own pattern within a pixel would change the mean.
+ * or if those over 4, 8 and 16 pixels are equal: a weight that varied with the mask's own pattern within a pixel would change the mean.
  */
 bool is_pixel_cut_out(float mask_cutoff)
 {
@@ -46,12 +46,15 @@ bool is_pixel_cut_out(float mask_cutoff)
   // Whether the mask is the same all around does not depend on the number of samples.
   float share_of_pixel = textureLod(base_color_texture, surface_uv, lod.y).a;
   float share_around = textureLod(base_color_texture, surface_uv, lod.y + 2.0).a;
-  float share_farther = textureLod(base_color_texture, surface_uv, lod.y + 4.0).a;
+  vec2 shares_farther = vec2(textureLod(base_color_texture, surface_uv, lod.y + 3.0).a,
+                             textureLod(base_color_texture, surface_uv, lod.y + 4.0).a);
   float is_fine = min(level - 1.0, 1.0) * (1.0 - 16.0 * abs(share_of_pixel - share_around));
   // A pattern of several pixels that repeats: its levels differ by their rounding to 1/255 alone. The last levels of a texture are equal for
   // any pattern.
   bool has_farther = lod.y + 5.0 <= float(textureQueryLevels(base_color_texture));
-  float is_repeated = has_farther ? min(4.0 * level - 3.0, 1.0) * (2.0 - 256.0 * abs(share_around - share_farther)) : 0.0;
+  // Those of a single shape are equal twice in few places.
+  vec2 changes = abs(share_around - shares_farther);
+  float is_repeated = has_farther ? min(4.0 * level - 3.0, 1.0) * (2.0 - 256.0 * max(changes.x, changes.y)) : 0.0;
   float weight = clamp(max(is_fine, is_repeated), 0.0, 1.0);
   return mix(is_open ? 0.0 : 1.0, share, weight) < mask_threshold();
 }
