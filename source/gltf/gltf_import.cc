@@ -50,7 +50,7 @@ namespace {
  */
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
-/** Extensions that the importer reads, or whose content it may ignore. A file that requires another one is refused. */
+/** Extensions that the importer reads, or whose content it may ignore. A warning names others that a file requires. */
 constexpr std::array<std::string_view, 22> supported_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_mesh_quantization",   "KHR_materials_variants",
