@@ -385,7 +385,7 @@ Report Inspection::report() const
   report.limits = limits_of(data);
   report.lost_shadow_count = lost_shadow_count(source);
   report.shadow_counters = data.shadows.counters();
-  report.pass_recordings = data.pass_recordings;
+  report.pass_recordings = data.surfaces.recording_count();
   auto [targets, blocks] = resource_nodes(source);
   report.tree = folder("frame", "the picture", "",
                        {program_nodes(source), pass_nodes(source), std::move(targets), std::move(blocks),
