@@ -138,8 +138,7 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
   const gpu::Shader *lit_shader =
       is_deferred || (is_transmissive && !inputs.has_behind)
           ? nullptr
-          : &recording.shaders.get(device, ShaderId::Lit,
-                                   with_variant(lighting | feature_of(surface)), function);
+          : &recording.shaders.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface)), function);
   if (render_scene::is_blended(scene, mesh)) {
     kind.blend_shader = lit_shader;
     return kind;

@@ -8,8 +8,9 @@
 #include <span>
 
 /**
- * Write \a texels as floats to the file \a path, for embedding. The values are rounded to seven digits, so that compilers
- * that differ in the last bits of a sum write the same file. \return the program's status: 0, or 1 with a message
+ * Write \a texels as floats to the file \a path, for embedding. The values are rounded to seven digits, so that
+ * compilers that differ in the last bits of a sum write the same file. \return the program's status: 0, or 1 with a
+ * message
  */
 inline int write_table(const char *path, std::span<const glm::dvec4> texels)
 {
