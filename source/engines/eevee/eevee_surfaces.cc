@@ -108,21 +108,8 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
                             !has(features, Feature::Light) && !inputs.has_surfaces;
   const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
   Kind kind{.batch = recording.scene.batch(object.mesh, streams_of(surface)).range()};
-  const State winding = is_mirrored_[first] ? State::FrontClockwise : State::None;
-  const State fixed = winding | render_scene::topology_state(mesh.topology);
+  const State fixed = (is_mirrored_[first] ? State::FrontClockwise : State::None) | topology_state(mesh.topology);
 
-  /** Adds a group of \a pass to the kind. \a bind binds the resources of a new group. */
-  const auto add = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
-                       const TextureSet &textures, const auto &bind) {
-    draw::ShadingGroup *&group = groups_[{&pass, shader.id(), state | fixed, textures}];
-    if (!group) {
-      group = &pass.group(shader);
-      group->state_enable(state | fixed);
-      bind(*group);
-      render_scene::bind_textures(*group, recording.scene, read, textures);
-    }
-    kind.groups[kind.group_count++] = group;
-  };
   const FunctionText function = function_of(scene, material);
   const FunctionText alpha_function = cut_out == MaterialClass::Plain ? FunctionText() : function;
   const TextureSet alpha_textures =
@@ -146,41 +133,65 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
+  const auto add = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
+                       const TextureSet &textures) {
+    add_group(kind, recording, pass, shader, state | fixed, read, textures, recording.bind);
+  };
   if (is_deferred) {
-    add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features), side, surface, {},
-        recording.bind);
+    add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features), side, surface, {});
   }
   else {
     draw::Pass &depth_pass = is_transmissive ? transmission_.depth_pass() : depth_.depth_pass(material.is_double_sided);
     const gpu::Shader &depth_shader =
         recording.shaders.get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth,
                               mask_features(cut_out), alpha_function);
-    add(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures, recording.bind);
+    add(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures);
   }
   if (lit_shader) {
-    add(is_transmissive ? transmission_.pass() : pass_, *lit_shader, side, surface, surface_textures, recording.bind);
+    add(is_transmissive ? transmission_.pass() : pass_, *lit_shader, side, surface, surface_textures);
   }
-  if (inputs.tinted_entry && !is_transmissive) {
-    add(tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, features), side, MaterialClass::Plain, {},
-        [&](draw::ShadingGroup &group) {
-          recording.bind(group);
-          group.constant("tinted_light", *inputs.tinted_entry);
-        });
+  record_inspection(kind, recording, {surface, surface_textures, function, lighting, side | fixed});
+  return kind;
+}
+
+void SurfacePasses::record_inspection(Kind &kind, const Recording &recording, const Inspected &inspected)
+{
+  gpu::Device &device = recording.scene.device();
+  const SurfaceInputs &inputs = recording.inputs;
+  const auto &[surface, textures, function, lighting, state] = inspected;
+  if (inputs.tinted_entry && surface != MaterialClass::Transmissive) {
+    add_group(kind, recording, tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, inputs.features),
+              state, MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
+                recording.bind(group);
+                group.constant("tinted_light", *inputs.tinted_entry);
+              });
   }
   if (inputs.has_surfaces) {
     // The program reads normals also where nothing gives light.
-    add(probe_.surfaces_pass(),
-        recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), side,
-        surface, surface_textures, recording.bind);
+    add_group(kind, recording, probe_.surfaces_pass(),
+              recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), state,
+              surface, textures, recording.bind);
   }
-  if (inputs.has_probe && has(features, Feature::Light)) {
-    add(probe_.visibility_pass(), recording.shaders.get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain,
-        {}, [&](draw::ShadingGroup &group) {
-          recording.bind(group);
-          probe_.bind_light(group);
-        });
+  if (inputs.has_probe && has(inputs.features, Feature::Light)) {
+    add_group(kind, recording, probe_.visibility_pass(), recording.shaders.get(device, ShaderId::Probe, lighting),
+              state, MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
+                recording.bind(group);
+                probe_.bind_light(group);
+              });
   }
-  return kind;
+}
+
+void SurfacePasses::add_group(Kind &kind, const Recording &recording, draw::Pass &pass, const gpu::Shader &shader,
+                              State state, MaterialClass read, const TextureSet &textures, const BindLit &bind)
+{
+  draw::ShadingGroup *&group = groups_[{&pass, shader.id(), state, textures}];
+  if (!group) {
+    group = &pass.group(shader);
+    group->state_enable(state);
+    bind(*group);
+    render_scene::bind_textures(*group, recording.scene, read, textures);
+  }
+  kind.groups[kind.group_count++] = group;
 }
 
 Need SurfacePasses::need(const FrameState &state) const

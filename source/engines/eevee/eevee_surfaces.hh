@@ -103,6 +103,19 @@ class SurfacePasses {
   };
   /** Make the groups for the objects of the kind of \a first. */
   Kind record_kind(const Recording &recording, draw::ObjectIndex first);
+  /** What the passes of Inspection need of the objects of a kind. */
+  struct Inspected {
+    render_scene::MaterialClass surface = render_scene::MaterialClass::Plain;
+    render_scene::TextureSet textures{};
+    FunctionText function{};
+    /** Features of a program that lights them. */
+    Feature lighting = Feature::None;
+    gpu::State state = gpu::State::None;
+  };
+  void record_inspection(Kind &kind, const Recording &recording, const Inspected &inspected);
+  /** Add a group of \a pass to the kind. \a bind binds the resources of a new group, beside \a textures. */
+  void add_group(Kind &kind, const Recording &recording, draw::Pass &pass, const gpu::Shader &shader, gpu::State state,
+                 render_scene::MaterialClass read, const render_scene::TextureSet &textures, const BindLit &bind);
   void record(const Recording &recording);
   [[nodiscard]] Need need(const FrameState &state) const;
 

@@ -227,6 +227,26 @@ std::array<double, 3> minimized(std::array<double, 3> start, double step, F &&f)
   return simplex[0].at;
 }
 
+/** Set the hemispherical mean of the albedo, for multiple scattering. It is the same in each row. */
+void set_mean_albedos(std::vector<glm::dvec4> &table)
+{
+  for (int column = 0; column < size; column++) {
+    double sum = 0.0;
+    constexpr int steps = 32;
+    const double roughness = double(column) / (size - 1);
+    for (int i = 0; i < steps; i++) {
+      const double cosine_sq = (i + 0.5) / steps;
+      const double cosine = std::sqrt(cosine_sq);
+      const Lobe lobe{.view = vec3(std::sqrt(1.0 - cosine_sq), 0.0, cosine),
+                      .alpha = std::max(roughness * roughness, double(ALPHA_MIN))};
+      sum += albedo_of(lobe, 64).whole / steps;
+    }
+    for (int row = 0; row < size; row++) {
+      table[std::size_t(row) * 2 * size + std::size_t(column) + size].z = sum;
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argument_count, char **arguments)
@@ -274,21 +294,6 @@ int main(int argument_count, char **arguments)
                              sheen_albedo(lobe.view, std::max(roughness * roughness, double(SHEEN_ALPHA_MIN)))};
     }
   }
-  // The hemispherical mean of the albedo, for multiple scattering. It is the same in each row.
-  for (int column = 0; column < size; column++) {
-    double sum = 0.0;
-    constexpr int steps = 32;
-    const double roughness = double(column) / (size - 1);
-    for (int i = 0; i < steps; i++) {
-      const double cosine_sq = (i + 0.5) / steps;
-      const double cosine = std::sqrt(cosine_sq);
-      const Lobe lobe{.view = vec3(std::sqrt(1.0 - cosine_sq), 0.0, cosine),
-                      .alpha = std::max(roughness * roughness, double(ALPHA_MIN))};
-      sum += albedo_of(lobe, 64).whole / steps;
-    }
-    for (int row = 0; row < size; row++) {
-      table[std::size_t(row) * 2 * size + std::size_t(column) + size].z = sum;
-    }
-  }
+  set_mean_albedos(table);
   return write_table(arguments[1], table);
 }
