@@ -108,7 +108,8 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
                             !has(features, Feature::Light) && !inputs.has_surfaces;
   const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
   Kind kind{.batch = recording.scene.batch(object.mesh, streams_of(surface)).range()};
-  const State fixed = (is_mirrored_[first] ? State::FrontClockwise : State::None) | topology_state(mesh.topology);
+  const State fixed =
+      (is_mirrored_[first] ? State::FrontClockwise : State::None) | render_scene::topology_state(mesh.topology);
 
   const FunctionText function = function_of(scene, material);
   const FunctionText alpha_function = cut_out == MaterialClass::Plain ? FunctionText() : function;

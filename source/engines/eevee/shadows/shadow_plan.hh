@@ -61,14 +61,6 @@ struct ShadowLamp {
 [[nodiscard]] std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps,
                                                    LampShading shading = LampShading::Whole);
 
-/**
- * The shadow kind of a lamp: \a asked, or else the kind of \a settings. None if \a settings disable shadows and for
- * hemi lamps. Pcf for a sun that requests Esm or Evsm.
- */
-[[nodiscard]] scene::ShadowKind shadow_kind(scene::LampKind lamp, std::optional<scene::ShadowKind> asked,
-                                            const ShadowSettings &settings);
-[[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
-
 /** The array textures of depths. All layers of an array have the size of the largest shadow in the array. */
 enum class ShadowArrayId : std::uint8_t {
   Cubes,
