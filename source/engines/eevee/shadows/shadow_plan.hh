@@ -51,9 +51,6 @@ struct ShadowLamp {
   [[nodiscard]] float shadow_range() const;
 };
 
-/** Half angle of the smallest circular cone that contains a spot's elliptical cone, radians. */
-[[nodiscard]] float widest_half_angle(const scene::PlacedLamp &lamp);
-
 /**
  * The lamps of all lights, in the order of \a placed, which is their priority. \a placed: the list from which \a lamps
  * was made. The key of a lamp is the key of its node.
