@@ -345,6 +345,11 @@ std::size_t SceneShadows::map_count() const
   return lamp_count(ShadowArrayId::Maps);
 }
 
+std::size_t SceneShadows::esm_count() const
+{
+  return lamp_count(ShadowArrayId::DistanceCube);
+}
+
 std::size_t SceneShadows::lamp_count(ShadowArrayId id) const
 {
   return std::size_t(

@@ -95,6 +95,7 @@ class SceneShadows {
   [[nodiscard]] std::uint64_t triangles_visited() const;
   [[nodiscard]] std::size_t cube_count() const;
   [[nodiscard]] std::size_t map_count() const;
+  [[nodiscard]] std::size_t esm_count() const;
   [[nodiscard]] const OctahedralStore &octahedral() const;
 
  private:
