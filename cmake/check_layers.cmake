@@ -17,8 +17,8 @@ set(source/image "")
 set(source/gltf source/scene source/image source/memory source/output source/trace)
 set(source/render_scene source/draw source/gpu source/memory source/scene shaders)
 set(source/engines/eevee source/render_scene source/draw source/gpu source/scene source/trace shaders)
-# A program that writes a table of the engine. The engine itself must not use the reference.
-set(source/engines/eevee/multiscatter_tool source/reference source/scene shaders)
+# Programs that write tables of the engine. The engine itself must not use the reference.
+set(source/engines/eevee/table_tools source/reference source/scene shaders)
 set(source/engines/unlit source/render_scene source/draw source/gpu source/scene shaders)
 set(source/engines/overlay source/render_scene source/draw source/gpu source/scene shaders)
 # A program of the build. The engine itself must not use shader_check.
@@ -38,7 +38,7 @@ set(source/python source/measure source/reference source/embed source/engines/ee
   source/shader_check source/gpu source/gltf source/image source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
-set(LAYERS source/trace source/memory source/output source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
+set(LAYERS source/trace source/memory source/output source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/table_tools
   source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/description_tool source/python shaders)
 
 set(VIOLATIONS 0)

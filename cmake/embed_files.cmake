@@ -1,16 +1,22 @@
-# Writes the C++ file OUTPUT, which contains the texts of FILES. Relative paths in FILES are relative to FOLDER. OUTPUT defines
-# NAMESPACE::file and NAMESPACE::paths, which HEADER declares. A file is named by its path in FILES, or by its last component if
-# that path is absolute.
+# Writes the C++ file OUTPUT, which contains FILES: the bytes of those that end with .bin, the texts of the others. Relative paths in
+# FILES are relative to FOLDER. OUTPUT defines NAMESPACE::file and NAMESPACE::paths, which HEADER declares. A file is named by its
+# path in FILES, or by its last component if that path is absolute.
 list(SORT FILES)
 set(TABLE "")
 foreach(FILE ${FILES})
   cmake_path(ABSOLUTE_PATH FILE BASE_DIRECTORY ${FOLDER} OUTPUT_VARIABLE PATH)
-  file(READ ${PATH} TEXT)
   set(NAME ${FILE})
   if(IS_ABSOLUTE ${FILE})
     cmake_path(GET FILE FILENAME NAME)
   endif()
-  string(APPEND TABLE "    {\"${NAME}\", R\"embedded(${TEXT})embedded\"},\n")
+  if(FILE MATCHES "\\.bin$")
+    file(READ ${PATH} BYTES HEX)
+    string(REGEX REPLACE "(..)" "\\\\x\\1" BYTES "${BYTES}")
+    string(APPEND TABLE "    {\"${NAME}\", \"${BYTES}\"sv},\n")
+  else()
+    file(READ ${PATH} TEXT)
+    string(APPEND TABLE "    {\"${NAME}\", R\"embedded(${TEXT})embedded\"},\n")
+  endif()
 endforeach()
 file(WRITE ${OUTPUT} "// Made by cmake/embed_files.cmake.
 #include \"${HEADER}\"
@@ -18,6 +24,8 @@ file(WRITE ${OUTPUT} "// Made by cmake/embed_files.cmake.
 #include <utility>
 
 namespace ${NAMESPACE} {
+
+using namespace std::string_view_literals;
 
 static constexpr std::pair<std::string_view, std::string_view> FILES[] = {
 ${TABLE}};

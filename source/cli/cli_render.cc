@@ -356,6 +356,41 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
   return is_finite ? status : Status::NonFinite;
 }
 
+/** What the options ask of a scene. */
+struct PreparedScene {
+  scene::PlacedCamera camera;
+  eevee::Background background;
+  /** \see content_of. Empty for a whole picture. */
+  std::string content;
+};
+
+/** Poses and lights the scene. */
+PreparedScene prepare(const RenderOptions &options, FrameSequence &frames, scene::Scene &scene)
+{
+  const bool is_part = options.is_part() || options.has_checkpoint;
+  const std::string imported = is_part ? scene_fingerprint(scene) : std::string();
+  frames.choose_animations(scene);
+  frames.pose(scene, 0);
+  const scene::PlacedCamera camera = find_camera(scene, options.camera);
+  const bool is_default_studio = light_by_world(scene, camera, options.world);
+  constexpr glm::vec3 light_grey(0.6F);
+  const std::optional<glm::vec3> own = is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt;
+  return {camera, background_of(options.background, own),
+          is_part ? content_of(imported, scene.world()) : std::string()};
+}
+
+/** Prints the results of a picture that was asked for as a whole. */
+void print_result(const RenderOptions &options, const RenderResult &result, const Chooser *chooser)
+{
+  print_summary(options, result);
+  if (chooser) {
+    chooser->print_measured();
+  }
+  if (options.is_explained) {
+    fmt::print("{}", tree_text(result.report.tree));
+  }
+}
+
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
 Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
@@ -364,16 +399,7 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
-  const bool is_part = options.is_part() || options.has_checkpoint;
-  const std::string imported = is_part ? scene_fingerprint(scene) : std::string();
-  frames.choose_animations(scene);
-  frames.pose(scene, 0);
-  const scene::PlacedCamera camera = find_camera(scene, options.camera);
-  const bool is_default_studio = light_by_world(scene, camera, options.world);
-  constexpr glm::vec3 light_grey(0.6F);
-  const eevee::Background background = background_of(
-      options.background, is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt);
-  const std::string content = is_part ? content_of(imported, scene.world()) : std::string();
+  const auto [camera, background, content] = prepare(options, frames, scene);
   aov.check(scene);
   std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);
@@ -432,13 +458,7 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   }
   write_json(options.json, to_json(options, settings, scene, camera, result, chooser.get()));
   if (status == Status::Done && options.part.empty()) {
-    print_summary(options, result);
-    if (chooser) {
-      chooser->print_measured();
-    }
-    if (options.is_explained) {
-      fmt::print("{}", tree_text(result.report.tree));
-    }
+    print_result(options, result, chooser.get());
   }
   return status == Status::Done && options.is_strict && !result.report.limits.empty() ? Status::Limit : status;
 }
@@ -470,6 +490,18 @@ bool is_of_process(const std::exception &error)
          dynamic_cast<const std::bad_alloc *>(&error) || dynamic_cast<const UsageError *>(&error);
 }
 
+/** Makes the device while a scene is imported. \throws the scene's error if both fail */
+std::unique_ptr<gpu::Device> create_device_during(std::future<ImportedScene> &import, std::string_view backend)
+{
+  try {
+    return create_device(backend);
+  }
+  catch (...) {
+    static_cast<void>(import.get());
+    throw;
+  }
+}
+
 /** Renders all scenes of the options on one device; the next is imported while one is drawn. */
 Status render_scenes(const RenderOptions &options, RenderResult &result)
 {
@@ -482,18 +514,10 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     add_files(one, FrameSequence(one.frames, one.output), roles);
     static_cast<void>(Aov(one.aov));
   }
-  // The import and the device are made at the same time. If both fail, the scene's error is the first.
   std::future<ImportedScene> import = start_import(scenes.front(), stops);
-  std::unique_ptr<gpu::Device> device;
-  try {
-    device = create_device(options.backend);
-    result.device = device->description();
-    result.device_seconds = seconds_since(start);
-  }
-  catch (...) {
-    static_cast<void>(import.get());
-    throw;
-  }
+  const std::unique_ptr<gpu::Device> device = create_device_during(import, options.backend);
+  result.device = device->description();
+  result.device_seconds = seconds_since(start);
   const RenderResult of_device = result;
   Status status = Status::Done;
   Clock::time_point scene_start = start;

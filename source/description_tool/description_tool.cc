@@ -146,7 +146,7 @@ void print_properties_page()
   print_settings<eevee::ShadowSettings>("Shadows of all lamps", "render.");
   print_settings<render_scene::Display>("Display", "render.");
   print_settings<gltf::ImportOptions>("Import", "");
-  print_settings<view::Settings>("The window alone", "render.");
+  print_settings<view::WindowSettings>("The window alone", "render.");
 }
 
 std::string list_text(std::span<const std::string_view> names)

@@ -4,6 +4,26 @@
 #include <cstdint>
 #include <string>
 
+/** Operators of an enumeration whose values are sets of bits, in its namespace. */
+#define GNOMON_MASK_OPERATORS(Mask)                          \
+  constexpr Mask operator|(Mask a, Mask b)                   \
+  {                                                          \
+    return Mask(std::uint32_t(a) | std::uint32_t(b));        \
+  }                                                          \
+  constexpr Mask operator&(Mask a, Mask b)                   \
+  {                                                          \
+    return Mask(std::uint32_t(a) & std::uint32_t(b));        \
+  }                                                          \
+  constexpr Mask without(Mask mask, Mask bits)               \
+  {                                                          \
+    return Mask(std::uint32_t(mask) & ~std::uint32_t(bits)); \
+  }                                                          \
+  /** Whether at least one of \a bits is set. */             \
+  constexpr bool has(Mask mask, Mask bits)                   \
+  {                                                          \
+    return (mask & bits) != Mask(0);                         \
+  }
+
 namespace gnomon::gpu {
 
 /** Mask of fixed-function state. A bit that is not set disables its function. */
@@ -37,18 +57,7 @@ enum class State : std::uint32_t {
   DepthFurther = 1U << 14,
 };
 
-constexpr State operator|(State a, State b)
-{
-  return State(std::uint32_t(a) | std::uint32_t(b));
-}
-constexpr State without(State mask, State bits)
-{
-  return State(std::uint32_t(mask) & ~std::uint32_t(bits));
-}
-constexpr bool has(State mask, State bit)
-{
-  return (std::uint32_t(mask) & std::uint32_t(bit)) != 0;
-}
+GNOMON_MASK_OPERATORS(State)
 
 /** Number of indices or vertices of a primitive. */
 constexpr std::uint32_t primitive_size(State mask)

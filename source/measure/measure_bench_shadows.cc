@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "internal/measure_bench_meshes.hh"
 
+#include "shadows/shadow_casters.hh"
 #include "shadows/shadow_cube.hh"
+#include "shadows/shadow_plan.hh"
 #include "shadows/shadows.hh"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -129,7 +129,7 @@ class CameraRays {
 };
 
 /** The inputs that all samples of a picture share. */
-struct Renderer {
+struct Integrator {
   const Tracer &tracer;
   CameraRays rays;
   const DirectLightSettings &settings;
@@ -137,7 +137,7 @@ struct Renderer {
   std::optional<WorldSampler> world;
   scene::EmissiveSurfaces emission;
 
-  Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_);
+  Integrator(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_);
   [[nodiscard]] glm::dvec3 lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
                                         const Bsdf &bsdf, int sample, std::uint64_t key) const;
   [[nodiscard]] glm::dvec3 lit_by_surfaces(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
@@ -151,8 +151,8 @@ struct Renderer {
   void render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const;
 };
 
-glm::dvec3 Renderer::lit_by(const scene::PlacedLamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
-                            const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const
+glm::dvec3 Integrator::lit_by(const scene::PlacedLamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
+                              const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const
 {
   const glm::dvec3 color(lamp.color);
   if (lamp.kind == scene::LampKind::Hemi) {
@@ -172,7 +172,7 @@ glm::dvec3 Renderer::lit_by(const scene::PlacedLamp &lamp, const Receiver &recei
   return scattered * color * (sample.irradiance * visible);
 }
 
-Renderer::Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_)
+Integrator::Integrator(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_)
     : tracer(tracer_), rays(rays_), settings(settings_)
 {
   if (const std::optional<scene::World> &given = tracer.scene().world()) {
@@ -190,8 +190,8 @@ Renderer::Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectL
  * One direction by the world's light, and where the surface is specular one by its lobe, together by the balance
  * heuristic (Veach and Guibas 1995).
  */
-glm::dvec3 Renderer::lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
-                                  const Bsdf &bsdf, int sample, std::uint64_t key) const
+glm::dvec3 Integrator::lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                    const Bsdf &bsdf, int sample, std::uint64_t key) const
 {
   const bool is_specular = bsdf.f90 > 0.0;
   const auto light_from = [&](const glm::dvec3 &to_world) {
@@ -210,8 +210,8 @@ glm::dvec3 Renderer::lit_by_world(const Receiver &receiver, const glm::dvec3 &no
 }
 
 /** One point of the surfaces that emit light. */
-glm::dvec3 Renderer::lit_by_surfaces(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
-                                     const Bsdf &bsdf, int sample, std::uint64_t key) const
+glm::dvec3 Integrator::lit_by_surfaces(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                       const Bsdf &bsdf, int sample, std::uint64_t key) const
 {
   const scene::EmissivePoint point = emission.at(even_point_in_cube(sample, key));
   const glm::dvec3 to_point = point.position - receiver.position_ws;
@@ -231,7 +231,7 @@ glm::dvec3 Renderer::lit_by_surfaces(const Receiver &receiver, const glm::dvec3 
   return visible_part(tracer, receiver, LightPoint{point.position, false}) * form * scattered * point.radiance;
 }
 
-glm::dvec3 Renderer::radiance(Ray ray, int sample, std::uint64_t key) const
+glm::dvec3 Integrator::radiance(Ray ray, int sample, std::uint64_t key) const
 {
   constexpr double least_open = 1e-6;
   glm::dvec3 sum(0.0);
@@ -250,7 +250,7 @@ glm::dvec3 Renderer::radiance(Ray ray, int sample, std::uint64_t key) const
   return sum;
 }
 
-glm::dvec3 Renderer::radiance_of(const Surface &surface, const glm::dvec3 &view, int sample, std::uint64_t key) const
+glm::dvec3 Integrator::radiance_of(const Surface &surface, const glm::dvec3 &view, int sample, std::uint64_t key) const
 {
   const double side = glm::dot(surface.geometric_normal_ws, view) < 0.0 ? -1.0 : 1.0;
   const Receiver receiver{surface.position_ws, side * surface.geometric_normal_ws, surface.error_m};
@@ -279,7 +279,7 @@ glm::dvec3 Renderer::radiance_of(const Surface &surface, const glm::dvec3 &view,
   return sum;
 }
 
-void Renderer::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const
+void Integrator::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const
 {
   const glm::ivec2 size_px = high_px - low_px;
   // rgb: weighted sum of the samples. w: sum of the weights.
@@ -316,7 +316,7 @@ Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, gl
                      const DirectLightSettings &settings)
 {
   check(size_px, settings);
-  const Renderer renderer(tracer, CameraRays(camera, size_px), settings);
+  const Integrator integrator(tracer, CameraRays(camera, size_px), settings);
   Picture picture{size_px, std::vector<glm::vec4>(std::size_t(size_px.x) * std::size_t(size_px.y))};
   // Each tile also renders the ring of pixels around it, which adds one sixteenth.
   constexpr int tile_px = 64;
@@ -326,7 +326,7 @@ Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, gl
   std::size_t tiles_done = 0;
   scene::parallel_for(tile_count, settings.thread_count, [&](std::size_t i) {
     const glm::ivec2 low = tile_px * glm::ivec2(i % std::size_t(tiles.x), i / std::size_t(tiles.x));
-    renderer.render_tile(low, glm::min(low + tile_px, size_px), picture);
+    integrator.render_tile(low, glm::min(low + tile_px, size_px), picture);
     const std::scoped_lock lock(mutex);
     tiles_done++;
     if (settings.progress) {
@@ -340,7 +340,7 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
                                     std::span<const glm::ivec2> pixels, const DirectLightSettings &settings)
 {
   check(size_px, settings);
-  const Renderer renderer(tracer, CameraRays(camera, size_px), settings);
+  const Integrator integrator(tracer, CameraRays(camera, size_px), settings);
   std::vector<glm::vec4> light(pixels.size());
   std::mutex mutex;
   std::size_t pixels_done = 0;
@@ -350,7 +350,7 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
     for (int sample = 0; sample < settings.sample_count; sample++) {
       const glm::dvec2 share = lattice_point(sample, settings.sample_count, key);
       const glm::dvec2 from_center_px = {filter_quantile(share.x), filter_quantile(share.y)};
-      sum += renderer.radiance(renderer.rays.at(glm::dvec2(pixels[i]) + 0.5 + from_center_px), sample, key);
+      sum += integrator.radiance(integrator.rays.at(glm::dvec2(pixels[i]) + 0.5 + from_center_px), sample, key);
     }
     light[i] = glm::vec4(sum / double(settings.sample_count), 1.0F);
     if (settings.progress) {

@@ -143,6 +143,11 @@ class RenderScene {
   {
     return lamps_;
   }
+  /** Increases when update() finds a change that a picture may show: one of those of the following revisions. */
+  [[nodiscard]] std::uint64_t revision() const
+  {
+    return objects_.revision() + lamps_revision_ + passes_revision_ + materials_revision_ + host_content_revision_;
+  }
   /** Increases when update() finds that a lamp or the world has changed. */
   [[nodiscard]] std::uint64_t lamps_revision() const
   {

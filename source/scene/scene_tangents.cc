@@ -57,17 +57,21 @@ glm::dvec3 any_tangent(const glm::dvec3 &normal)
   return in_plane(axis, normal);
 }
 
-}  // namespace
+/** The directions along u of the triangles around each vertex. */
+struct TangentSums {
+  std::vector<std::uint32_t> weld;
+  /** By whether the image is mirrored on the triangle, and by welded vertex. Weighted by angles. */
+  std::array<std::vector<glm::dvec3>, 2> sums;
+  /** By triangle. */
+  std::vector<bool> is_mirrored;
+};
 
-void make_tangents(Mesh &mesh, const TextureSlot &normal_texture)
+TangentSums tangent_sums(const Mesh &mesh, const TextureSlot &normal_texture)
 {
   const glm::dmat3x2 uv_from_mesh = normal_texture.uv_from_mesh();
   const std::vector<glm::vec2> &uvs = mesh.uv_set(normal_texture.uv_set);
-  const std::vector<std::uint32_t> weld = welded(mesh, uvs);
-  // By welded vertex and whether the image is mirrored on the triangle.
-  std::array<std::vector<glm::dvec3>, 2> sums;
-  sums.fill(std::vector<glm::dvec3>(mesh.positions.size(), glm::dvec3(0.0)));
-  std::vector<bool> is_mirrored(mesh.indices.size() / 3, false);
+  TangentSums result{welded(mesh, uvs), {}, std::vector<bool>(mesh.indices.size() / 3, false)};
+  result.sums.fill(std::vector<glm::dvec3>(mesh.positions.size(), glm::dvec3(0.0)));
   for (std::size_t first = 0; first < mesh.indices.size(); first += 3) {
     const std::uint32_t *corner = &mesh.indices[first];
     const auto edge = [&](int to, int from) {
@@ -84,17 +88,24 @@ void make_tangents(Mesh &mesh, const TextureSlot &normal_texture)
       continue;
     }
     const bool mirrored = area < 0.0;
-    is_mirrored[first / 3] = mirrored;
+    result.is_mirrored[first / 3] = mirrored;
     const glm::dvec3 along_u = (edge(1, 0) * -b.y + edge(2, 0) * a.y) * (mirrored ? -1.0 : 1.0);
     for (int i = 0; i < 3; i++) {
       const glm::dvec3 normal(mesh.normals[corner[i]]);
       const glm::dvec3 next = in_plane(edge((i + 1) % 3, i), normal);
       const glm::dvec3 last = in_plane(edge((i + 2) % 3, i), normal);
       const double angle = std::acos(std::clamp(glm::dot(next, last), -1.0, 1.0));
-      sums[mirrored ? 1 : 0][weld[corner[i]]] += angle * in_plane(along_u, normal);
+      result.sums[mirrored ? 1 : 0][result.weld[corner[i]]] += angle * in_plane(along_u, normal);
     }
   }
+  return result;
+}
 
+}  // namespace
+
+void make_tangents(Mesh &mesh, const TextureSlot &normal_texture)
+{
+  const auto [weld, sums, is_mirrored] = tangent_sums(mesh, normal_texture);
   const std::size_t vertex_count = mesh.positions.size();
   mesh.tangents.assign(vertex_count, glm::vec4(0.0F));
   // For a vertex with triangles of both orientations, the vertex of the mirrored ones.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/stability_inputs.hh"
 
+#include "shadows/shadow_octahedral_store.hh"
 #include "shadows/shadows.hh"
 
 #include "measure_scene.hh"

@@ -2,6 +2,7 @@
 // A sun's maps: fitted to scenes of any scale and position, low suns, flat and point-like casters, deep views.
 #include "internal/stability_cases.hh"
 
+#include "shadows/shadow_casters.hh"
 #include "shadows/shadow_sun_fit.hh"
 
 #include <fmt/format.h>

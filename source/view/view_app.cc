@@ -37,7 +37,7 @@ constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 App::App(const Options &options) : options_(options), window_(options.size_px, !options.script.empty())
 {
   make_device();
-  viewports_.push_back(std::make_unique<Viewport>());
+  viewports_.push_back(std::make_unique<WindowViewport>());
   if (!options.shaders.empty()) {
     use_shaders(options.shaders);
   }
@@ -55,7 +55,7 @@ void App::make_context_anew()
 {
   end_fly(true);
   end_transform(true);
-  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+  for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->close();
   }
   shadow_panel_.close();
@@ -224,15 +224,15 @@ void App::finish_measurement()
 
 void App::show_document(scene::Scene scene)
 {
-  const Settings settings = document_ ? document_->settings() : default_settings();
+  const WindowSettings settings = document_ ? document_->settings() : default_settings();
   end_fly(true);
   error_panel_.clear();
-  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+  for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->close();
   }
   document_.reset();
   document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
-  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+  for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->look_at(*document_);
   }
   const std::string &path = document_->scene().path;
@@ -367,7 +367,7 @@ void App::set_viewport_count(int count)
     viewports_.pop_back();
   }
   while (viewports_.size() < std::size_t(count)) {
-    auto viewport = std::make_unique<Viewport>();
+    auto viewport = std::make_unique<WindowViewport>();
     viewport->navigation = viewports_.front()->navigation;
     if (document_) {
       viewport->navigation.look_from(sides[viewports_.size() % std::size(sides)]);

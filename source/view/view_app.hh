@@ -156,7 +156,7 @@ class App {
   {
     return int(viewports_.size());
   }
-  [[nodiscard]] Viewport &active()
+  [[nodiscard]] WindowViewport &active()
   {
     return *viewports_[active_];
   }
@@ -244,12 +244,12 @@ class App {
   void show_left(float height);
   void show_viewports(float width, float height);
   void show_viewport(std::size_t index, glm::vec2 size);
-  void show_viewport_header(Viewport &viewport);
+  void show_viewport_header(WindowViewport &viewport);
   void show_tabs();
   void show_status();
   void show_question();
   void show_leaving();
-  void try_draw(Viewport &viewport);
+  void try_draw(WindowViewport &viewport);
 
   Options options_;
   Window window_;
@@ -264,7 +264,7 @@ class App {
   /** The scene for the next frame: the window of this one still uses the pictures of the open scene. */
   std::shared_ptr<scene::Scene> next_scene_;
   /** Declared after the document, because viewports must be destroyed before it. */
-  std::vector<std::unique_ptr<Viewport>> viewports_;
+  std::vector<std::unique_ptr<WindowViewport>> viewports_;
   std::size_t active_ = 0;
   bool is_complete_ = true;
   /** The user interface takes some frames to settle after an event. */

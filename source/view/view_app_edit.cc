@@ -105,7 +105,7 @@ void App::end_fly(bool is_kept)
 
 void App::step_fly()
 {
-  Viewport &viewport = active();
+  WindowViewport &viewport = active();
   if (!viewport.fly) {
     return;
   }

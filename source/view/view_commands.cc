@@ -26,7 +26,7 @@ Document &document(App &app)
 }
 
 /** The active viewport, after its picture has been drawn once. */
-Viewport &drawn_viewport(App &app)
+WindowViewport &drawn_viewport(App &app)
 {
   document(app);
   if (!app.active().viewport()) {
@@ -251,7 +251,7 @@ void set(App &app, Words words)
     edited.set_world(world);
   }
   else if (name.starts_with("render.")) {
-    Settings settings = edited.settings();
+    WindowSettings settings = edited.settings();
     is_set = set_property(settings, name.substr(7), values);
     edited.set_settings(settings);
   }

@@ -31,7 +31,7 @@ static std::string text_of(const std::string &path)
   return text;
 }
 
-Document::Document(gpu::Device &device, scene::Scene scene, const Settings &settings)
+Document::Document(gpu::Device &device, scene::Scene scene, const WindowSettings &settings)
     : scene_(std::move(scene)), settings_(settings), saved_revision_(scene_.revision())
 {
   use_device(device);
@@ -133,7 +133,7 @@ std::vector<std::string> Document::reload_surface_functions()
   return messages;
 }
 
-void Document::set_settings(const Settings &settings)
+void Document::set_settings(const WindowSettings &settings)
 {
   settings_ = settings;
   settings_revision_++;

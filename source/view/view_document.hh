@@ -26,7 +26,7 @@ class Document {
    * \a device must outlive the document, or leave_device must be called before. The document must outlive the viewports
    * that show it.
    */
-  Document(gpu::Device &device, scene::Scene scene, const Settings &settings);
+  Document(gpu::Device &device, scene::Scene scene, const WindowSettings &settings);
   /** Destroy all resources on the device; call it before the device is destroyed. Scene, history and settings stay. */
   void leave_device();
   /** Show the scene on another device. \pre leave_device */
@@ -128,11 +128,11 @@ class Document {
    */
   std::vector<std::string> reload_surface_functions();
 
-  [[nodiscard]] const Settings &settings() const
+  [[nodiscard]] const WindowSettings &settings() const
   {
     return settings_;
   }
-  void set_settings(const Settings &settings);
+  void set_settings(const WindowSettings &settings);
   /** The shadow of \a lamp, with the current settings. */
   [[nodiscard]] ShadowOfLamp shadow_of(const scene::Lamp &lamp) const
   {
@@ -164,7 +164,7 @@ class Document {
   std::vector<std::string> engine_names_;
   std::map<std::string, std::unique_ptr<draw::Engine>> engines_;
   std::optional<TransformOperation> operation_;
-  Settings settings_;
+  WindowSettings settings_;
   std::uint64_t settings_revision_ = 0;
   bool has_own_shaders_ = false;
   /** The time of the last write of the file of each surface function. */

@@ -123,7 +123,7 @@ void show_table(const std::vector<measure::TimedError> &points)
 
 }  // namespace
 
-void ErrorPanel::begin(const Document &document, const Viewport &viewport)
+void ErrorPanel::begin(const Document &document, const WindowViewport &viewport)
 {
   if (measurement_) {
     throw std::runtime_error("A measurement is under way");

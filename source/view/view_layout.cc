@@ -36,7 +36,7 @@ void show_splitter(const char *name, float height, float sign, float &width)
 
 }  // namespace
 
-void App::try_draw(Viewport &viewport)
+void App::try_draw(WindowViewport &viewport)
 {
   try {
     // The menus, the tree and the viewports before this one may have edited the scene in this frame.
@@ -49,7 +49,7 @@ void App::try_draw(Viewport &viewport)
   }
 }
 
-void App::show_viewport_header(Viewport &viewport)
+void App::show_viewport_header(WindowViewport &viewport)
 {
   ImGui::SetNextItemWidth(80.0F);
   if (ImGui::BeginCombo("##engine", viewport.engine.c_str())) {
@@ -91,7 +91,7 @@ void App::show_viewport_header(Viewport &viewport)
 
 void App::show_viewport(std::size_t index, glm::vec2 size)
 {
-  Viewport &viewport = *viewports_[index];
+  WindowViewport &viewport = *viewports_[index];
   ImGui::PushID(int(index));
   ImGui::BeginChild("viewport", {size.x, size.y}, false, ImGuiWindowFlags_NoScrollbar);
   show_viewport_header(viewport);

@@ -52,7 +52,7 @@ struct PanelKey {
  */
 class FramePanel {
  public:
-  void show(Document &document, Viewport &viewport);
+  void show(Document &document, WindowViewport &viewport);
 
  private:
   eevee::Report report_;
@@ -66,7 +66,7 @@ class ErrorPanel {
    * Start to measure the picture of \a viewport as eevee draws it, with the current scene and settings. \throws
    * std::runtime_error if a measurement is running
    */
-  void begin(const Document &document, const Viewport &viewport);
+  void begin(const Document &document, const WindowViewport &viewport);
   /** Cancel the measurement, if one is running. take then throws measure::Cancelled. */
   void cancel()
   {
@@ -114,18 +114,18 @@ class ErrorPanel {
 class ShadowPanel {
  public:
   /** \a device: the document's device. \throws gpu::Error */
-  void show(Document &document, Viewport &viewport, gpu::Device &device);
+  void show(Document &document, WindowViewport &viewport, gpu::Device &device);
   /**
    * Show the layer \a text of the selected lamp's shadow: "all", or a name for eevee::find_layer. \throws
    * std::runtime_error, which lists the layers, if there is none of that name
    */
-  void select(Document &document, Viewport &viewport, const std::string &text);
+  void select(Document &document, WindowViewport &viewport, const std::string &text);
   /** Delete the texture; call it before its OpenGL context is destroyed. */
   void close();
 
  private:
   /** \pre the lamp has layers */
-  void read(eevee::Engine &engine, Viewport &viewport, std::size_t lamp, gpu::Device &device);
+  void read(eevee::Engine &engine, WindowViewport &viewport, std::size_t lamp, gpu::Device &device);
 
   Canvas canvas_;
   PanelKey shown_;

@@ -131,6 +131,6 @@ template bool set_property(scene::Camera &, const std::string &, std::span<const
 template bool set_property(ShadowOfLamp &, const std::string &, std::span<const std::string>);
 template bool set_property(scene::Material &, const std::string &, std::span<const std::string>);
 template bool set_property(scene::World &, const std::string &, std::span<const std::string>);
-template bool set_property(Settings &, const std::string &, std::span<const std::string>);
+template bool set_property(WindowSettings &, const std::string &, std::span<const std::string>);
 
 }  // namespace gnomon::view

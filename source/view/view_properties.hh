@@ -114,7 +114,7 @@ struct TextureLine {
 
 /**
  * The properties of T: Placement, scene::Node, scene::Lamp, ShadowOfLamp, scene::Camera, scene::Material, scene::World
- * and Settings.
+ * and WindowSettings.
  */
 template <typename T>
 [[nodiscard]] const Properties<T> &properties();

@@ -270,6 +270,6 @@ template bool show_properties(ShadowOfLamp &);
 template bool show_properties(scene::Camera &);
 template bool show_properties(scene::Material &);
 template bool show_properties(scene::World &);
-template bool show_properties(Settings &);
+template bool show_properties(WindowSettings &);
 
 }  // namespace gnomon::view

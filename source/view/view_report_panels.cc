@@ -22,7 +22,7 @@ void show_text(const std::string &text)
   ImGui::TextUnformatted(text.data(), text.data() + text.size());
 }
 
-PanelKey key_of(Document &document, const Viewport &viewport, int layer = 0)
+PanelKey key_of(Document &document, const WindowViewport &viewport, int layer = 0)
 {
   return {document.scene().revision(), document.settings_revision(), viewport.samples_drawn(), document.selected,
           layer};
@@ -32,7 +32,7 @@ PanelKey key_of(Document &document, const Viewport &viewport, int layer = 0)
  * Show the first and the last sample of a picture only, so that the panel costs little time. A limit of error or time
  * may end the picture.
  */
-bool is_worth_showing(const Viewport &viewport)
+bool is_worth_showing(const WindowViewport &viewport)
 {
   return viewport.samples_drawn() <= 1 || viewport.is_complete();
 }
@@ -70,7 +70,7 @@ void show_part(const eevee::FrameNode &node)
 }
 
 /** The selected lamp in RenderScene::lamps. Empty: none, or eevee does not draw the picture of \a viewport. */
-std::optional<std::size_t> selected_lamp(Document &document, Viewport &viewport)
+std::optional<std::size_t> selected_lamp(Document &document, WindowViewport &viewport)
 {
   const auto lamps = document.render_scene().lamps();
   const auto lamp = std::ranges::find(lamps, document.selected, &scene::PlacedLamp::node);
@@ -80,7 +80,7 @@ std::optional<std::size_t> selected_lamp(Document &document, Viewport &viewport)
 
 void show_density_box(Document &document)
 {
-  Settings settings = document.settings();
+  WindowSettings settings = document.settings();
   if (ImGui::Checkbox("Texel density over the picture", &settings.has_texel_density)) {
     document.set_settings(settings);
   }
@@ -97,7 +97,7 @@ void show_lines(const char *title, const std::vector<std::string> &lines)
 
 }  // namespace
 
-void FramePanel::show(Document &document, Viewport &viewport)
+void FramePanel::show(Document &document, WindowViewport &viewport)
 {
   eevee::Engine *engine = document.eevee();
   if (!engine || !viewport.viewport() || viewport.engine != "eevee") {
@@ -127,7 +127,7 @@ void FramePanel::show(Document &document, Viewport &viewport)
   }
 }
 
-void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &device)
+void ShadowPanel::show(Document &document, WindowViewport &viewport, gpu::Device &device)
 {
   show_density_box(document);
   const std::optional<std::size_t> index = selected_lamp(document, viewport);
@@ -163,7 +163,7 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
   ImGui::TextDisabled("Near is dark, far is bright; %.0fx%.0f px", double(size_px.x), double(size_px.y));
 }
 
-void ShadowPanel::select(Document &document, Viewport &viewport, const std::string &text)
+void ShadowPanel::select(Document &document, WindowViewport &viewport, const std::string &text)
 {
   const std::optional<std::size_t> lamp = selected_lamp(document, viewport);
   if (!lamp) {
@@ -190,7 +190,7 @@ void ShadowPanel::close()
   shown_ = {};
 }
 
-void ShadowPanel::read(eevee::Engine &engine, Viewport &viewport, std::size_t lamp, gpu::Device &device)
+void ShadowPanel::read(eevee::Engine &engine, WindowViewport &viewport, std::size_t lamp, gpu::Device &device)
 {
   const gpu::Texture &picture =
       eevee::Inspection(engine, *viewport.viewport())

@@ -120,55 +120,67 @@ void SceneTree::show(Document &document)
   ImGui::EndTable();
 }
 
-void show_selection(Document &document)
+/** The rows of the node \a handle, which is selected. */
+void show_node(Document &document, scene::Handle<scene::Node> handle)
 {
-  const scene::Scene &scene = document.scene();
-  const scene::Handle<scene::Node> selected = document.selected;
-  if (!scene.nodes().is_live(selected)) {
-    ImGui::TextDisabled("Nothing is selected.");
+  scene::Node node = document.scene().nodes()[handle];
+  if (!header(fmt::format("Node: {}###node", node.name))) {
     return;
   }
-  scene::Node node = scene.nodes()[selected];
-  if (header(fmt::format("Node: {}###node", node.name))) {
-    ImGui::PushID("placement");
-    const Placement before = placement_of(node.parent_from_node);
-    Placement placement = before;
-    if (show_properties(placement)) {
-      document.edit(selected,
-                    [&](scene::Node &edited) { edited.parent_from_node = placed(edited.parent_from_node, placement); });
-    }
-    ImGui::PopID();
-    node = scene.nodes()[selected];
-    if (show_properties(node)) {
-      document.edit(selected, [&](scene::Node &edited) { edited = node; });
-    }
+  ImGui::PushID("placement");
+  const Placement before = placement_of(node.parent_from_node);
+  Placement placement = before;
+  if (show_properties(placement)) {
+    document.edit(handle,
+                  [&](scene::Node &edited) { edited.parent_from_node = placed(edited.parent_from_node, placement); });
   }
-  if (const scene::Lamp *lamp = scene.lamps().find(node.lamp);
-      lamp && header(fmt::format("Lamp: {}###lamp", lamp->name))) {
-    ImGui::PushID("lamp");
-    scene::Lamp edited = *lamp;
-    if (show_properties(edited)) {
-      document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
-    }
-    ImGui::PushID("shadow");
-    ShadowOfLamp shadow = document.shadow_of(edited);
-    if (edited.kind != scene::LampKind::Hemi && show_properties(shadow)) {
-      document.edit(node.lamp, [&](scene::Lamp &one) { one.shadow = shadow.shadow; });
-    }
-    ImGui::PopID();
-    ImGui::PopID();
+  ImGui::PopID();
+  node = document.scene().nodes()[handle];
+  if (show_properties(node)) {
+    document.edit(handle, [&](scene::Node &edited) { edited = node; });
   }
-  if (const scene::Camera *camera = scene.cameras().find(node.camera);
-      camera && header(fmt::format("Camera: {}###camera", camera->name))) {
-    ImGui::PushID("camera");
-    scene::Camera edited = *camera;
-    if (show_properties(edited)) {
-      document.edit(node.camera, [&](scene::Camera &one) { one = edited; });
-    }
-    ImGui::PopID();
+}
+
+void show_lamp(Document &document, scene::Handle<scene::Lamp> handle)
+{
+  const scene::Lamp *lamp = document.scene().lamps().find(handle);
+  if (!lamp || !header(fmt::format("Lamp: {}###lamp", lamp->name))) {
+    return;
   }
+  ImGui::PushID("lamp");
+  scene::Lamp edited = *lamp;
+  if (show_properties(edited)) {
+    document.edit(handle, [&](scene::Lamp &one) { one = edited; });
+  }
+  ImGui::PushID("shadow");
+  ShadowOfLamp shadow = document.shadow_of(edited);
+  if (edited.kind != scene::LampKind::Hemi && show_properties(shadow)) {
+    document.edit(handle, [&](scene::Lamp &one) { one.shadow = shadow.shadow; });
+  }
+  ImGui::PopID();
+  ImGui::PopID();
+}
+
+void show_camera(Document &document, scene::Handle<scene::Camera> handle)
+{
+  const scene::Camera *camera = document.scene().cameras().find(handle);
+  if (!camera || !header(fmt::format("Camera: {}###camera", camera->name))) {
+    return;
+  }
+  ImGui::PushID("camera");
+  scene::Camera edited = *camera;
+  if (show_properties(edited)) {
+    document.edit(handle, [&](scene::Camera &one) { one = edited; });
+  }
+  ImGui::PopID();
+}
+
+/** The materials of \a meshes, each once. */
+void show_materials(Document &document, const std::vector<scene::Handle<scene::Mesh>> &meshes)
+{
+  const scene::Scene &scene = document.scene();
   std::vector<scene::Handle<scene::Material>> shown;
-  for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
+  for (const scene::Handle<scene::Mesh> mesh : meshes) {
     const scene::Mesh *value = scene.meshes().find(mesh);
     const scene::Material *material = value ? scene.materials().find(value->material) : nullptr;
     if (!material || std::ranges::find(shown, value->material) != shown.end()) {
@@ -185,6 +197,20 @@ void show_selection(Document &document)
     }
     ImGui::PopID();
   }
+}
+
+void show_selection(Document &document)
+{
+  const scene::Handle<scene::Node> selected = document.selected;
+  if (!document.scene().nodes().is_live(selected)) {
+    ImGui::TextDisabled("Nothing is selected.");
+    return;
+  }
+  show_node(document, selected);
+  const scene::Node node = document.scene().nodes()[selected];
+  show_lamp(document, node.lamp);
+  show_camera(document, node.camera);
+  show_materials(document, node.meshes);
 }
 
 bool show_world(Document &document)
@@ -222,7 +248,7 @@ bool show_world(Document &document)
 
 void show_settings(Document &document)
 {
-  Settings settings = document.settings();
+  WindowSettings settings = document.settings();
   if (show_properties(settings)) {
     document.set_settings(settings);
   }

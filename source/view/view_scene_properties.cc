@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view_property_makers.hh"
 
+#include "eevee_shadow_settings.hh"
 #include "scene_units.hh"
-#include "shadows/shadow_plan.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 namespace gnomon::view {
 
 /** The settings of all viewports. */
-struct Settings {
+struct WindowSettings {
   eevee::Settings eevee{};
   render_scene::Display display{};
   /** \see ErrorEstimate */
@@ -22,24 +22,24 @@ struct Settings {
 };
 
 template <typename Visit>
-constexpr void Settings::for_each_property(Visit &&visit)
+constexpr void WindowSettings::for_each_property(Visit &&visit)
 {
   using scene::property;
-  visit(property(&Settings::error_max,
+  visit(property(&WindowSettings::error_max,
                  {.name = "error_max",
                   .key = "error",
                   .label = "Maximum error",
                   .unit = "RMSE",
                   .max = 1,
                   .sentence = "A picture is complete once its error is estimated to be at most this. 0: no limit."}));
-  visit(property(&Settings::seconds_max,
+  visit(property(&WindowSettings::seconds_max,
                  {.name = "seconds_max",
                   .key = "seconds",
                   .label = "Time limit",
                   .unit = "s",
                   .max = 3600,
                   .sentence = "A picture is complete once it has its samples, or after this time. 0: no limit."}));
-  visit(property(&Settings::budget_ms,
+  visit(property(&WindowSettings::budget_ms,
                  {.name = "budget_ms",
                   .key = "budget",
                   .label = "Time budget",
@@ -48,7 +48,7 @@ constexpr void Settings::for_each_property(Visit &&visit)
                   .makes_picture = false,
                   .sentence = "Time that the viewports may take in each frame: they show a preview after an edit, and "
                               "refine it. 0: each frame draws one whole sample."}));
-  visit(property(&Settings::has_texel_density,
+  visit(property(&WindowSettings::has_texel_density,
                  {.name = "has_texel_density",
                   .key = "density",
                   .label = "Show texel density",
@@ -56,9 +56,9 @@ constexpr void Settings::for_each_property(Visit &&visit)
 }
 
 /** The settings that the window starts with. */
-[[nodiscard]] inline Settings default_settings()
+[[nodiscard]] inline WindowSettings default_settings()
 {
-  Settings settings;
+  WindowSettings settings;
   settings.eevee.sample_count = 32;
   return settings;
 }
@@ -68,7 +68,7 @@ constexpr void Settings::for_each_property(Visit &&visit)
  * is then one of which any number is spread evenly, and eevee::Settings::sample_count is a maximum that the viewport
  * keeps.
  */
-[[nodiscard]] inline eevee::Settings engine_settings(const Settings &settings)
+[[nodiscard]] inline eevee::Settings engine_settings(const WindowSettings &settings)
 {
   eevee::Settings drawn = settings.eevee;
   drawn.has_surfaces = settings.has_texel_density;

@@ -18,7 +18,7 @@ constexpr glm::vec4 outline_color(1.0F, 0.55F, 0.1F, 1.0F);
 
 }  // namespace
 
-void Viewport::close()
+void WindowViewport::close()
 {
   budgeted_.reset();
   has_budget_ = false;
@@ -33,7 +33,7 @@ void Viewport::close()
   fly.reset();
 }
 
-void Viewport::look_at(const Document &document)
+void WindowViewport::look_at(const Document &document)
 {
   const std::vector<scene::PlacedCamera> cameras = document.scene().placed_cameras();
   if (cameras.empty()) {
@@ -44,13 +44,13 @@ void Viewport::look_at(const Document &document)
   look_through(document, cameras.front());
 }
 
-void Viewport::look_through(const Document &document, const scene::PlacedCamera &camera)
+void WindowViewport::look_through(const Document &document, const scene::PlacedCamera &camera)
 {
   navigation.look_through(camera, document.scene().bounds());
   looked_through_ = {camera.node, navigation};
 }
 
-std::optional<scene::PlacedCamera> Viewport::looked_through(const Document &document) const
+std::optional<scene::PlacedCamera> WindowViewport::looked_through(const Document &document) const
 {
   if (!looked_through_ || !(looked_through_->navigation == navigation)) {
     return std::nullopt;
@@ -65,20 +65,20 @@ std::optional<scene::PlacedCamera> Viewport::looked_through(const Document &docu
   return scene::PlacedCamera{*camera, handle, scene::frame_of(scene.world_from_node(handle))};
 }
 
-void Viewport::follow(const Document &document)
+void WindowViewport::follow(const Document &document)
 {
   if (const std::optional<scene::PlacedCamera> camera = looked_through(document)) {
     look_through(document, *camera);
   }
 }
 
-scene::PlacedCamera Viewport::camera(const Document &document) const
+scene::PlacedCamera WindowViewport::camera(const Document &document) const
 {
   const std::optional<scene::PlacedCamera> camera = looked_through(document);
   return camera ? *camera : navigation.camera(double(document.scene().bounds().radius()));
 }
 
-Viewport::OverlayKey Viewport::overlay_key(Document &document) const
+WindowViewport::OverlayKey WindowViewport::overlay_key(Document &document) const
 {
   if (!has_overlays) {
     OverlayKey hidden;
@@ -92,7 +92,8 @@ Viewport::OverlayKey Viewport::overlay_key(Document &document) const
   return key;
 }
 
-void Viewport::draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target)
+void WindowViewport::draw_picture(Document &document, draw::Engine &used, double budget_seconds,
+                                  const draw::Target &target)
 {
   auto *eevee = dynamic_cast<eevee::Engine *>(&used);
   has_budget_ = eevee && budget_seconds > 0.0;
@@ -109,7 +110,7 @@ void Viewport::draw_picture(Document &document, draw::Engine &used, double budge
   budgeted_->draw(drawn_view_, target);
 }
 
-bool Viewport::draw(Document &document, double budget_seconds)
+bool WindowViewport::draw(Document &document, double budget_seconds)
 {
   render_scene::RenderScene &render_scene = document.render_scene();
   const Key key{document.scene().revision(), document.settings_revision(), engine, size_px_, render_scene.origin_ws()};
@@ -171,7 +172,7 @@ bool Viewport::draw(Document &document, double budget_seconds)
   return is_complete_;
 }
 
-void Viewport::limit_time(const Document &document, eevee::Engine &eevee)
+void WindowViewport::limit_time(const Document &document, eevee::Engine &eevee)
 {
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - started_;
   const float seconds_max = document.settings().seconds_max;
@@ -180,7 +181,7 @@ void Viewport::limit_time(const Document &document, eevee::Engine &eevee)
   }
 }
 
-void Viewport::limit_error(const Document &document, eevee::Engine &eevee)
+void WindowViewport::limit_error(const Document &document, eevee::Engine &eevee)
 {
   const float error_max = document.settings().error_max;
   const int samples = viewport_->samples_drawn();
@@ -201,7 +202,7 @@ void Viewport::limit_error(const Document &document, eevee::Engine &eevee)
   }
 }
 
-void Viewport::draw_overlays(Document &document, const draw::Target &target)
+void WindowViewport::draw_overlays(Document &document, const draw::Target &target)
 {
   if (!has_overlays) {
     return;
@@ -216,8 +217,8 @@ void Viewport::draw_overlays(Document &document, const draw::Target &target)
   overlay_->draw_lines(drawn_view_, size_px_, lines, target);
 }
 
-std::vector<float> Viewport::read_written(gpu::Device &device,
-                                          const std::function<void(const draw::Target &)> &write) const
+std::vector<float> WindowViewport::read_written(gpu::Device &device,
+                                                const std::function<void(const draw::Target &)> &write) const
 {
   const draw::TargetTexture picture(device, "read_picture", gpu::Format::RGBA32F, size_px_);
   draw::Target target = picture.target();
@@ -226,7 +227,7 @@ std::vector<float> Viewport::read_written(gpu::Device &device,
   return gpu::read_as<float>(device, picture.texture());
 }
 
-std::vector<float> Viewport::radiance(Document &document)
+std::vector<float> WindowViewport::radiance(Document &document)
 {
   draw::Engine *one = &document.engine(engine);
   return read_written(document.render_scene().device(),

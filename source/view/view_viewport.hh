@@ -20,7 +20,7 @@
 namespace gnomon::view {
 
 /** A view of the document's scene in the window, with its camera, its engine and its pointer actions. */
-class Viewport {
+class WindowViewport {
  public:
   /** Delete the picture; call it before the document is destroyed or leaves its device. */
   void close();
@@ -81,7 +81,8 @@ class Viewport {
     return is_complete_ && !has_failed_;
   }
   /**
-   * Estimated RMSE of the current picture. Empty: not known yet, or no maximum error is set. \see Settings::error_max
+   * Estimated RMSE of the current picture. Empty: not known yet, or no maximum error is set. \see
+   * WindowSettings::error_max
    */
   [[nodiscard]] std::optional<double> error() const
   {

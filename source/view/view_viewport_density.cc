@@ -12,7 +12,7 @@
 
 namespace gnomon::view {
 
-void Viewport::draw_density(Document &document, eevee::Engine &eevee, const draw::Target &target)
+void WindowViewport::draw_density(Document &document, eevee::Engine &eevee, const draw::Target &target)
 {
   DensityKey key{viewport_->restart_count(), size_px_, eevee.is_complete(*viewport_), document.selected};
   if (key != density_key_) {
@@ -38,7 +38,7 @@ void Viewport::draw_density(Document &document, eevee::Engine &eevee, const draw
   }
 }
 
-void Viewport::show_density_scale(Document &document, glm::vec2 corner, glm::vec2 size) const
+void WindowViewport::show_density_scale(Document &document, glm::vec2 corner, glm::vec2 size) const
 {
   constexpr float width = 180.0F;
   constexpr float height = 10.0F;

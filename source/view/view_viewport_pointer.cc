@@ -17,7 +17,7 @@ constexpr double orbit_angle = 3.0;
 
 }  // namespace
 
-std::optional<glm::vec2> Viewport::place_of(const glm::dvec3 &position_ws) const
+std::optional<glm::vec2> WindowViewport::place_of(const glm::dvec3 &position_ws) const
 {
   const std::optional<glm::dvec2> pixel = map_.pixel_of(position_ws);
   const bool is_inside =
@@ -25,7 +25,7 @@ std::optional<glm::vec2> Viewport::place_of(const glm::dvec3 &position_ws) const
   return is_inside ? std::optional(glm::vec2(*pixel)) : std::nullopt;
 }
 
-void Viewport::pick(Document &document, glm::ivec2 pixel_px)
+void WindowViewport::pick(Document &document, glm::ivec2 pixel_px)
 {
   const auto is_at = [&](const glm::dmat4 &world) {
     const std::optional<glm::vec2> place = place_of(glm::dvec3(world[3]));
@@ -50,7 +50,7 @@ void Viewport::pick(Document &document, glm::ivec2 pixel_px)
   document.selected = hit ? hit->node : scene::Handle<scene::Node>();
 }
 
-std::optional<Gizmo> Viewport::gizmo_of(Document &document) const
+std::optional<Gizmo> WindowViewport::gizmo_of(Document &document) const
 {
   if (!document.gizmo || !document.scene().nodes().is_live(document.selected)) {
     return std::nullopt;
@@ -58,14 +58,14 @@ std::optional<Gizmo> Viewport::gizmo_of(Document &document) const
   return Gizmo{document.scene().world_from_node(document.selected), *document.gizmo, document.orientation};
 }
 
-void Viewport::begin_transform(Document &document, TransformKind kind)
+void WindowViewport::begin_transform(Document &document, TransformKind kind)
 {
   document.begin_transform({kind, TransformAxis::All, document.orientation}, map_, pointer_px_);
   is_transforming_ = true;
   is_handle_dragged_ = false;
 }
 
-bool Viewport::drag_handle(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px)
+bool WindowViewport::drag_handle(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px)
 {
   const std::optional<Gizmo> gizmo = gizmo_of(document);
   const std::optional<TransformAxis> axis = gizmo ? gizmo->handle_at(map_, from_px) : std::nullopt;
@@ -79,7 +79,7 @@ bool Viewport::drag_handle(Document &document, const glm::dvec2 &from_px, const 
   return true;
 }
 
-void Viewport::show_lamps(Document &document, glm::vec2 corner, glm::vec2 size)
+void WindowViewport::show_lamps(Document &document, glm::vec2 corner, glm::vec2 size)
 {
   ImDrawList &list = *ImGui::GetWindowDrawList();
   list.PushClipRect({corner.x, corner.y}, {corner.x + size.x, corner.y + size.y}, true);
@@ -96,7 +96,7 @@ void Viewport::show_lamps(Document &document, glm::vec2 corner, glm::vec2 size)
   list.PopClipRect();
 }
 
-bool Viewport::take_operation(Document &document)
+bool WindowViewport::take_operation(Document &document)
 {
   TransformOperation *operation = document.operation();
   is_transforming_ &= operation != nullptr;
@@ -118,7 +118,7 @@ bool Viewport::take_operation(Document &document)
   return true;
 }
 
-void Viewport::take_navigation(bool is_hovered)
+void WindowViewport::take_navigation(bool is_hovered)
 {
   const ImGuiIO &io = ImGui::GetIO();
   const glm::dvec2 moved = glm::dvec2(io.MouseDelta.x, io.MouseDelta.y) / double(size_px_.y);
@@ -143,7 +143,7 @@ void Viewport::take_navigation(bool is_hovered)
   }
 }
 
-void Viewport::take_pointer(Document &document, glm::vec2 corner)
+void WindowViewport::take_pointer(Document &document, glm::vec2 corner)
 {
   const ImGuiIO &io = ImGui::GetIO();
   const bool is_hovered = ImGui::IsItemHovered();
@@ -183,7 +183,7 @@ void Viewport::take_pointer(Document &document, glm::vec2 corner)
   }
 }
 
-bool Viewport::show(Document &document, glm::vec2 size, bool is_active)
+bool WindowViewport::show(Document &document, glm::vec2 size, bool is_active)
 {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const glm::vec2 corner(at.x, at.y);

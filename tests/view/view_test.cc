@@ -273,12 +273,12 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
   check(scene::Node());
   check(scene::World());
   check(Placement());
-  check(Settings());
+  check(WindowSettings());
 }
 
 TEST(ViewPropertiesTest, SurfacesAreDrawnOnlyForTexelDensity)
 {
-  Settings settings = default_settings();
+  WindowSettings settings = default_settings();
   EXPECT_FALSE(engine_settings(settings).has_surfaces);
   const std::vector<std::string> on = {"on"};
   EXPECT_TRUE(set_property(settings, "density", std::span(on)));
@@ -446,7 +446,7 @@ TEST(ViewPropertiesTest, EveryFactorOfAMaterialIsAPropertyOfItsOwn)
 }
 
 // The two parts, which have rows of their own.
-static_assert(test::member_count<Settings>() == test::row_count<Settings>() + 2);
+static_assert(test::member_count<WindowSettings>() == test::row_count<WindowSettings>() + 2);
 
 /** Checks that the window shows each row of \a Part with a label, within the same limits. */
 template <typename Part, typename T>
@@ -481,15 +481,15 @@ TEST(ViewPropertiesTest, TheWindowShowsEachRowOfThingsAndSettingsWithinItsLimits
   expect_rows<scene::Material, scene::Material>();
   expect_rows<scene::Node, scene::Node>();
   expect_rows<scene::World, scene::World>();
-  expect_rows<Settings, Settings>();
-  expect_rows<eevee::Settings, Settings>();
-  expect_rows<eevee::ShadowSettings, Settings>();
-  expect_rows<render_scene::Display, Settings>();
+  expect_rows<WindowSettings, WindowSettings>();
+  expect_rows<eevee::Settings, WindowSettings>();
+  expect_rows<eevee::ShadowSettings, WindowSettings>();
+  expect_rows<render_scene::Display, WindowSettings>();
 }
 
 TEST(ViewPropertiesTest, ShadowSettingsOfAllLampsAreThoseOfTheCommandLine)
 {
-  Settings settings;
+  WindowSettings settings;
   const eevee::ShadowSettings &shadow = settings.eevee.shadow;
   const auto set = [&](const std::string &name, const std::string &word) {
     return set_property(settings, name, std::span(&word, 1));

@@ -2,7 +2,9 @@
 #include "eevee_debug.hh"
 
 #include "eevee_shaders.hh"
-#include "shadows/shadow_technique.hh"
+#include "eevee_shadow_layers.hh"
+
+#include "draw_pass.hh"
 
 #include <algorithm>
 

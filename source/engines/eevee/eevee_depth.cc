@@ -74,7 +74,7 @@ bool DepthPasses::awaits(const draw::View &view) const
 
 void DepthPasses::clear(const scene::Scene &scene, Feature features)
 {
-  for (draw::Pass *pass : {&depth_pass_, &depth_pass_cull_, &gbuffer_pass_, &lighting_pass_}) {
+  for (draw::Pass *pass : {&depth_pass_, &depth_pass_cull_, &gbuffer_pass_}) {
     pass->clear();
   }
   is_scene_deferred_ = is_deferred_scene(scene, features);
@@ -87,6 +87,7 @@ bool DepthPasses::is_deferred(const scene::Scene &scene, const render_scene::Ren
 
 void DepthPasses::record_lighting(gpu::Device &device, ShaderCache &shaders, Feature features, const BindLit &bind)
 {
+  lighting_pass_.clear();
   if (!has_gbuffer()) {
     return;
   }

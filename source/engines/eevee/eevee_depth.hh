@@ -17,7 +17,7 @@ class DepthPasses {
  public:
   DepthPasses(draw::ObjectBuffer &objects, const RenderBuffers &buffers, const Shadows &shadows);
 
-  /** Remove all calls, and decide whether the scene has deferred lighting. \a features: of the frame. */
+  /** Remove all calls of objects, and decide whether the scene has deferred lighting. \a features: of the frame. */
   void clear(const scene::Scene &scene, Feature features);
   /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
   [[nodiscard]] bool is_deferred(const scene::Scene &scene, const render_scene::RenderObject &object) const;
@@ -31,7 +31,7 @@ class DepthPasses {
   {
     return gbuffer_pass_;
   }
-  /** Record the lighting of the G-buffer, if it has objects. \a bind: binds what programs with lighting read. */
+  /** Record the lighting of the G-buffer anew. It is empty if that has no objects. \a bind: binds what programs with lighting read. */
   void record_lighting(gpu::Device &device, ShaderCache &shaders, Feature features, const BindLit &bind);
 
   [[nodiscard]] bool has_gbuffer() const

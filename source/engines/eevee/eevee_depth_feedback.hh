@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadows/shadow_visible_clusters.hh"
+#include "eevee_picture_depths.hh"
 
 #include "gpu_device.hh"
 

@@ -114,9 +114,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &
 
 PictureKey Engine::picture_key() const
 {
-  return {scene_.objects().revision(),   scene_.lamps_revision(), scene_.passes_revision(),
-          scene_.materials_revision(),   settings_revision_,      shaders_->revision(),
-          scene_.host_content_revision()};
+  return {.scene = scene_.revision(), .settings = settings_revision_, .shaders = shaders_->revision()};
 }
 
 void Engine::cache_finish(draw::Viewport &viewport)
@@ -281,7 +279,8 @@ void Engine::take_losses(draw::Viewport &viewport)
   const std::uint64_t loss_count = viewport.device().loss_count();
   if (data.loss_count != loss_count) {
     data.is_recorded = false;
-    data.recorded.reset();
+    // Programs of lost submissions are made anew.
+    data.surfaces.forget();
     data.lights.forget();
     data.loss_count = loss_count;
   }

@@ -69,7 +69,6 @@ void Data::resized()
   buffers.resized();
   depth.feedback().forget();
   is_synced = false;
-  recorded.reset();
 }
 
 FrameState Data::state(const Settings &settings) const

@@ -26,31 +26,14 @@
 /** The engine's data in a viewport. Internal to the engine. */
 namespace gnomon::eevee {
 
-/** Everything that recorded passes depend on, beside the resources that they bind by value. */
-struct PassesKey {
-  std::uint64_t structure = 0;
-  std::uint64_t passes = 0;
-  std::uint64_t settings = 0;
-  std::uint64_t shaders = 0;
-  /** Scene::world_revision if there is a background, otherwise 0. */
-  std::uint64_t world = 0;
-  Feature features = Feature::None;
-  std::optional<int> tinted_light;
-  bool has_behind = false;
-  bool has_converged_maps = false;
-
-  bool operator==(const PassesKey &) const = default;
-};
-
-/** Revisions of everything that the picture depends on, except the view and the size. */
+/** All that a picture depends on, except the view and the size. Each has an owner that alone sees its changes. */
 struct PictureKey {
-  std::uint64_t objects = 0;
-  std::uint64_t lamps = 0;
-  std::uint64_t passes = 0;
-  std::uint64_t materials = 0;
+  /** RenderScene::revision. */
+  std::uint64_t scene = 0;
+  /** Engine::settings_revision. */
   std::uint64_t settings = 0;
+  /** ShaderCache::revision. */
   std::uint64_t shaders = 0;
-  std::uint64_t host_content = 0;
 
   bool operator==(const PictureKey &) const = default;
 };
@@ -100,9 +83,6 @@ struct Data final : draw::EngineViewportData {
   Feature features = Feature::None;
   /** SceneLights::revision from which `features` was derived. */
   std::uint64_t lights_revision = 0;
-  std::optional<PassesKey> recorded;
-  /** \see Report::pass_recordings */
-  std::uint64_t pass_recordings = 0;
   std::optional<PictureKey> synced_picture;
   /** The visible objects of the view that was recorded last. */
   draw::VisibleObjects visible;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_state.hh"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -57,26 +59,11 @@ enum class Feature : std::uint32_t {
   LampHighlights = 1U << 19,
 };
 
-constexpr Feature operator|(Feature a, Feature b)
-{
-  return Feature(std::uint32_t(a) | std::uint32_t(b));
-}
-constexpr Feature operator&(Feature a, Feature b)
-{
-  return Feature(std::uint32_t(a) & std::uint32_t(b));
-}
-constexpr bool has(Feature mask, Feature bit)
-{
-  return (mask & bit) != Feature::None;
-}
+GNOMON_MASK_OPERATORS(Feature)
 
 /** At least one lamp has a shadow. */
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
-constexpr Feature without(Feature features, Feature removed)
-{
-  return Feature(std::uint32_t(features) & ~std::uint32_t(removed));
-}
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)
 {

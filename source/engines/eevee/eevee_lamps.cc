@@ -4,7 +4,6 @@
 #include "eevee_lamp_points.hh"
 #include "eevee_shape_shared.h"
 #include "shadows/shadow_cube.hh"
-#include "shadows/shadow_plan.hh"
 
 #include <fmt/ranges.h>
 
@@ -37,6 +36,15 @@ bool gives_light(const scene::Lamp &lamp)
 }
 
 }  // namespace
+
+float widest_half_angle(const scene::PlacedLamp &lamp)
+{
+  const glm::dvec2 scale = lamp.kind == scene::LampKind::Spot ? scene::spot_scale(lamp) : glm::dvec2(1.0);
+  const double widest = std::max(scale.x, scale.y);
+  const double angle = lamp.spot_outer_angle;
+  // atan2, because the tangent of the float nearest to π/2, which is more than π/2, is negative.
+  return widest == 1.0 ? lamp.spot_outer_angle : float(std::atan2(widest * std::sin(angle), std::cos(angle)));
+}
 
 shared::LightData light_data(const scene::PlacedLamp &lamp)
 {

@@ -30,6 +30,8 @@ enum class LampShading {
 [[nodiscard]] shared::LightData light_data(const scene::PlacedLamp &lamp);
 /** The extent and axes of a lamp in the layout of the shaders. */
 [[nodiscard]] shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading);
+/** Half angle of the smallest circular cone that contains a spot's elliptical cone, radians. */
+[[nodiscard]] float widest_half_angle(const scene::PlacedLamp &lamp);
 
 /** Let \a light give no light. Its shadow and its points stay as they are. */
 void leave_out(shared::LightData &light);

@@ -5,6 +5,7 @@
 #include "eevee_material_variants.hh"
 #include "eevee_settings.hh"
 #include "shadows/scene_shadows.hh"
+#include "shadows/shadow_plan.hh"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Creates the resources of a frame and records its passes. Unchanged resources and passes are kept from the last sync.
+// Creates the resources of a frame and records its passes. Unchanged resources and passes of objects are kept.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 
@@ -57,23 +57,7 @@ void Engine::record(draw::Viewport &viewport)
     shared.shadows.allocate(viewport.device(), *shaders_);
   }
   data.shadows.allocate(viewport.device());
-  const PassesKey key{
-      .structure = scene_.objects().structure_revision(),
-      .passes = scene_.passes_revision(),
-      .settings = settings_revision_,
-      .shaders = shaders_->revision(),
-      .world = has_background(settings_, scene_) ? scene_.scene().world_revision() : 0,
-      .features = data.features,
-      .tinted_light = shared.lights.plan().tinted,
-      .has_behind = bool(data.transmission.behind()),
-      .has_converged_maps = data.adaptive.has_maps(),
-  };
-  if (data.recorded != key || data.surfaces.is_winding_changed() || !data.frame.is_current(viewport.device()) ||
-      !data.probe.is_current(viewport.device())) {
-    data.recorded.reset();
-    record_passes(viewport);
-    data.recorded = key;
-  }
+  record_passes(viewport);
   shared.shadow_pass.update(scene_, *shaders_, settings_, settings_revision_, data.features, data.surfaces.objects());
   data.is_synced = data.is_recorded = true;
 }
@@ -81,20 +65,31 @@ void Engine::record(draw::Viewport &viewport)
 void Engine::record_passes(draw::Viewport &viewport)
 {
   Data &data = data_of(viewport);
-  free_surface_functions(*shaders_, scene_.scene());
-  data.pass_recordings++;
-  data.output.clear();
-  const BindLit bind = [&](draw::ShadingGroup &group) { data.bind_lit(group); };
+  gpu::Device &device = viewport.device();
   const std::optional<int> tinted = data.shared->lights.plan().tinted;
-  data.surfaces.record({scene_, *shaders_, settings_, data.features,
-                        tinted ? std::optional(data.shared->lights.entry_of(*tinted, tinted_entry)) : std::nullopt,
-                        bind});
-  data.depth.record_lighting(viewport.device(), *shaders_, with_variant(data.features | asked_features(settings_)),
-                             bind);
+  const Feature features = data.features | asked_features(settings_);
+  const BindLit bind = [&](draw::ShadingGroup &group) { data.bind_lit(group); };
+  // Passes of one call are recorded each time: that takes no longer than a test of their inputs.
+  data.output.clear();
   data.background.record(*shaders_, scene_, settings_);
-  data.film.record(shaders_->get(viewport.device(), ShaderId::Film), data.buffers.radiance, viewport.guard_px(),
+  data.film.record(shaders_->get(device, ShaderId::Film), data.buffers.radiance, viewport.guard_px(),
                    data.buffers.nearest);
-  data.adaptive.record(viewport.device(), *shaders_, settings_, viewport.guard_px());
+  data.adaptive.record(device, *shaders_, settings_, viewport.guard_px());
+  if (!data.frame.is_current(device) || !data.probe.is_current(device)) {
+    data.surfaces.forget();
+  }
+  data.surfaces.update(
+      scene_, *shaders_,
+      {.scene = scene_.passes_revision(),
+       .shaders = shaders_->revision(),
+       .pcf = settings_.shadow.pcf,
+       .features = features,
+       .tinted_entry = tinted ? std::optional(data.shared->lights.entry_of(*tinted, tinted_entry)) : std::nullopt,
+       .has_probe = settings_.has_probe,
+       .has_surfaces = settings_.has_surfaces,
+       .has_behind = bool(data.transmission.behind())},
+      bind);
+  data.depth.record_lighting(device, *shaders_, with_variant(features), bind);
 }
 
 }  // namespace gnomon::eevee

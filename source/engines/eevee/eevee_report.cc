@@ -343,8 +343,7 @@ std::vector<FramePart> frame_parts(const ReportSource &source)
        has(f, Feature::ShadowCube) ? nothing_seen : no_shadow);
   part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),
        has(f, Feature::ShadowMap) ? why_not("no caster can shadow a visible surface") : no_shadow);
-  part("shadow_esm", shadows.octahedral().size() > 0,
-       fmt::format("{} point lamps or spots", shadows.octahedral().size()),
+  part("shadow_esm", shadows.esm_count() > 0, fmt::format("{} point lamps or spots", shadows.esm_count()),
        has(f, Feature::ShadowEsm) ? nothing_seen : no_shadow);
   part("shadow_pass", !shared.shadow_pass.pass().is_empty(), "casters for the lamps' shadows",
        has(f, any_shadow) ? nothing_seen : "no shadow");
@@ -385,7 +384,7 @@ Report Inspection::report() const
   report.limits = limits_of(data);
   report.lost_shadow_count = lost_shadow_count(source);
   report.shadow_counters = data.shadows.counters();
-  report.pass_recordings = data.pass_recordings;
+  report.pass_recordings = data.surfaces.recording_count();
   auto [targets, blocks] = resource_nodes(source);
   report.tree = folder("frame", "the picture", "",
                        {program_nodes(source), pass_nodes(source), std::move(targets), std::move(blocks),

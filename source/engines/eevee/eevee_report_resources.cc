@@ -3,6 +3,8 @@
 #include "eevee_report_source.hh"
 #include "eevee_resource_report.hh"
 
+#include "shadows/shadow_octahedral_store.hh"
+
 #include <fmt/format.h>
 
 namespace gnomon::eevee {

@@ -3,6 +3,7 @@
 
 #include "eevee_material_variants.hh"
 #include "eevee_surface_functions.hh"
+#include "shadows/shadow_casters.hh"
 #include "shadows/shadows.hh"
 
 #include <algorithm>

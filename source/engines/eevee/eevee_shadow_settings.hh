@@ -321,4 +321,12 @@ constexpr void ShadowSettings::for_each_property(Visit &&visit)
                   .sentence = "Most memory of all shadow layers; their sizes are reduced to fit."}));
 }
 
+/**
+ * The shadow kind of a lamp: \a asked, or else the kind of \a settings. None if \a settings disable shadows and for
+ * hemi lamps. Pcf for a sun that requests Esm or Evsm.
+ */
+[[nodiscard]] scene::ShadowKind shadow_kind(scene::LampKind lamp, std::optional<scene::ShadowKind> asked,
+                                            const ShadowSettings &settings);
+[[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
+
 }  // namespace gnomon::eevee

@@ -26,7 +26,7 @@ void SurfacePasses::begin_sync(std::size_t object_count)
 {
   objects_.clear();
   objects_.reserve(object_count);
-  is_collecting_ = true;
+  is_collecting_ = are_objects_changed_ = true;
 }
 
 void SurfacePasses::sync(draw::ObjectIndex object, bool is_mirrored)
@@ -35,7 +35,7 @@ void SurfacePasses::sync(draw::ObjectIndex object, bool is_mirrored)
     objects_.push_back(object);
   }
   else if (object < is_mirrored_.size()) {
-    is_winding_changed_ |= is_mirrored_[object] != is_mirrored;
+    are_objects_changed_ |= is_mirrored_[object] != is_mirrored;
   }
 }
 
@@ -44,11 +44,25 @@ void SurfacePasses::end_sync()
   is_collecting_ = false;
 }
 
-void SurfacePasses::record(const SurfaceRecording &recording)
+void SurfacePasses::update(render_scene::RenderScene &scene, ShaderCache &shaders, const SurfaceInputs &inputs,
+                           const BindLit &bind)
+{
+  if (recorded_ == inputs && !are_objects_changed_) {
+    return;
+  }
+  recorded_.reset();
+  recording_count_++;
+  free_surface_functions(shaders, scene.scene());
+  record({scene, shaders, inputs, bind});
+  are_objects_changed_ = false;
+  recorded_ = inputs;
+}
+
+void SurfacePasses::record(const Recording &recording)
 {
   render_scene::RenderScene &scene = recording.scene;
   const draw::ObjectBuffer &objects = scene.objects();
-  depth_.clear(scene.scene(), recording.features);
+  depth_.clear(scene.scene(), recording.inputs.features);
   transmission_.clear();
   blend_.clear();
   probe_.clear();
@@ -56,7 +70,6 @@ void SurfacePasses::record(const SurfaceRecording &recording)
   tint_pass_.clear();
   groups_.clear();
   is_mirrored_.assign(objects.index_end(), false);
-  is_winding_changed_ = false;
   std::vector<Kind> kinds;
   // By mesh and by what differs between its objects: the number of the kind, from 1. 0: there is none yet.
   std::vector<std::array<std::uint32_t, 4>> numbers(scene.scene().meshes().index_end());
@@ -79,12 +92,12 @@ void SurfacePasses::record(const SurfaceRecording &recording)
   }
 }
 
-SurfacePasses::Kind SurfacePasses::record_kind(const SurfaceRecording &recording, draw::ObjectIndex first)
+SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw::ObjectIndex first)
 {
   gpu::Device &device = recording.scene.device();
   const scene::Scene &scene = recording.scene.scene();
-  const Settings &settings = recording.settings;
-  const Feature features = recording.features;
+  const SurfaceInputs &inputs = recording.inputs;
+  const Feature features = inputs.features;
   const render_scene::RenderObject &object = recording.scene.object(first);
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
@@ -92,24 +105,12 @@ SurfacePasses::Kind SurfacePasses::record_kind(const SurfaceRecording &recording
   const MaterialClass material_class = render_scene::material_class(scene, mesh);
   // Without light, the base colour has no effect on an opaque surface, except in Inspection::surfaces.
   const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
-                            !has(features, Feature::Light) && !settings.has_surfaces;
+                            !has(features, Feature::Light) && !inputs.has_surfaces;
   const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
   Kind kind{.batch = recording.scene.batch(object.mesh, streams_of(surface)).range()};
-  const State winding = is_mirrored_[first] ? State::FrontClockwise : State::None;
-  const State fixed = winding | render_scene::topology_state(mesh.topology);
+  const State fixed =
+      (is_mirrored_[first] ? State::FrontClockwise : State::None) | render_scene::topology_state(mesh.topology);
 
-  /** Adds a group of \a pass to the kind. \a bind binds the resources of a new group. */
-  const auto add = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
-                       const TextureSet &textures, const auto &bind) {
-    draw::ShadingGroup *&group = groups_[{&pass, shader.id(), state | fixed, textures}];
-    if (!group) {
-      group = &pass.group(shader);
-      group->state_enable(state | fixed);
-      bind(*group);
-      render_scene::bind_textures(*group, recording.scene, read, textures);
-    }
-    kind.groups[kind.group_count++] = group;
-  };
   const FunctionText function = function_of(scene, material);
   const FunctionText alpha_function = cut_out == MaterialClass::Plain ? FunctionText() : function;
   const TextureSet alpha_textures =
@@ -120,14 +121,12 @@ SurfacePasses::Kind SurfacePasses::record_kind(const SurfaceRecording &recording
   // An object that receives no shadows is drawn with a program without shadow lookups.
   const Feature lighting = (object.receives_shadow ? features : without_shadows(features)) |
                            (function.key != 0 ? lit_function_features : Feature::None);
-  // Without the picture behind it, nothing that transmits light is in the view.
   const bool is_transmissive = surface == MaterialClass::Transmissive;
   const bool is_deferred = depth_.is_deferred(scene, object);
   const gpu::Shader *lit_shader =
-      is_deferred || (is_transmissive && !transmission_.behind())
+      is_deferred || (is_transmissive && !inputs.has_behind)
           ? nullptr
-          : &recording.shaders.get(device, ShaderId::Lit,
-                                   with_variant(lighting | feature_of(surface) | asked_features(settings)), function);
+          : &recording.shaders.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface)), function);
   if (render_scene::is_blended(scene, mesh)) {
     kind.blend_shader = lit_shader;
     return kind;
@@ -135,41 +134,65 @@ SurfacePasses::Kind SurfacePasses::record_kind(const SurfaceRecording &recording
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
+  const auto add = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
+                       const TextureSet &textures) {
+    add_group(kind, recording, pass, shader, state | fixed, read, textures, recording.bind);
+  };
   if (is_deferred) {
-    add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features), side, surface, {},
-        recording.bind);
+    add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features), side, surface, {});
   }
   else {
     draw::Pass &depth_pass = is_transmissive ? transmission_.depth_pass() : depth_.depth_pass(material.is_double_sided);
     const gpu::Shader &depth_shader =
         recording.shaders.get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth,
                               mask_features(cut_out), alpha_function);
-    add(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures, recording.bind);
+    add(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures);
   }
   if (lit_shader) {
-    add(is_transmissive ? transmission_.pass() : pass_, *lit_shader, side, surface, surface_textures, recording.bind);
+    add(is_transmissive ? transmission_.pass() : pass_, *lit_shader, side, surface, surface_textures);
   }
-  if (recording.tinted_entry && !is_transmissive) {
-    add(tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, features), side, MaterialClass::Plain, {},
-        [&](draw::ShadingGroup &group) {
-          recording.bind(group);
-          group.constant("tinted_light", *recording.tinted_entry);
-        });
-  }
-  if (settings.has_surfaces) {
-    // The program reads normals also where nothing gives light.
-    add(probe_.surfaces_pass(),
-        recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), side,
-        surface, surface_textures, recording.bind);
-  }
-  if (settings.has_probe && has(features, Feature::Light)) {
-    add(probe_.visibility_pass(), recording.shaders.get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain,
-        {}, [&](draw::ShadingGroup &group) {
-          recording.bind(group);
-          probe_.bind_light(group);
-        });
-  }
+  record_inspection(kind, recording, {surface, surface_textures, function, lighting, side | fixed});
   return kind;
+}
+
+void SurfacePasses::record_inspection(Kind &kind, const Recording &recording, const Inspected &inspected)
+{
+  gpu::Device &device = recording.scene.device();
+  const SurfaceInputs &inputs = recording.inputs;
+  const auto &[surface, textures, function, lighting, state] = inspected;
+  if (inputs.tinted_entry && surface != MaterialClass::Transmissive) {
+    add_group(kind, recording, tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, inputs.features),
+              state, MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
+                recording.bind(group);
+                group.constant("tinted_light", *inputs.tinted_entry);
+              });
+  }
+  if (inputs.has_surfaces) {
+    // The program reads normals also where nothing gives light.
+    add_group(kind, recording, probe_.surfaces_pass(),
+              recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), state,
+              surface, textures, recording.bind);
+  }
+  if (inputs.has_probe && has(inputs.features, Feature::Light)) {
+    add_group(kind, recording, probe_.visibility_pass(), recording.shaders.get(device, ShaderId::Probe, lighting),
+              state, MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
+                recording.bind(group);
+                probe_.bind_light(group);
+              });
+  }
+}
+
+void SurfacePasses::add_group(Kind &kind, const Recording &recording, draw::Pass &pass, const gpu::Shader &shader,
+                              State state, MaterialClass read, const TextureSet &textures, const BindLit &bind)
+{
+  draw::ShadingGroup *&group = groups_[{&pass, shader.id(), state, textures}];
+  if (!group) {
+    group = &pass.group(shader);
+    group->state_enable(state);
+    bind(*group);
+    render_scene::bind_textures(*group, recording.scene, read, textures);
+  }
+  kind.groups[kind.group_count++] = group;
 }
 
 Need SurfacePasses::need(const FrameState &state) const

@@ -16,16 +16,28 @@ namespace gnomon::eevee {
 /** The calls of one group share the pass, the shader, the additional state and the material's textures. */
 using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, render_scene::TextureSet>;
 
-/** Inputs of SurfacePasses::record. */
-struct SurfaceRecording {
-  render_scene::RenderScene &scene;
-  ShaderCache &shaders;
-  const Settings &settings;
-  /** Features that the programs of the frame have. */
+/**
+ * All that the passes of surfaces depend on, beside their objects and the resources that they bind by value. No setting
+ * reaches a recording but through these members, so that none can be left out of the comparison.
+ */
+struct SurfaceInputs {
+  /** RenderScene::passes_revision: programs, states and textures follow from the meshes and materials. */
+  std::uint64_t scene = 0;
+  /** ShaderCache::revision: another engine may keep the programs from before a reload, so that they still exist. */
+  std::uint64_t shaders = 0;
+  /** A constant of programs. */
+  PcfKernel pcf{};
+  /** They select programs: those of the frame, and asked_features. */
   Feature features = Feature::None;
   /** Entry of `light_block` of the sun of Settings::has_cascade_tint. Empty: no cascade is tinted. */
-  std::optional<int> tinted_entry;
-  const BindLit &bind;
+  std::optional<int> tinted_entry{};
+  /** Settings::has_probe and Settings::has_surfaces: each adds a pass. */
+  bool has_probe = false;
+  bool has_surfaces = false;
+  /** Transmission::behind exists. Without it, nothing that transmits light is in the view, and its passes are empty. */
+  bool has_behind = false;
+
+  bool operator==(const SurfaceInputs &) const = default;
 };
 
 /** Features of programs that settings ask for. */
@@ -47,18 +59,23 @@ class SurfacePasses {
   void begin_sync(std::size_t object_count);
   void sync(draw::ObjectIndex object, bool is_mirrored);
   void end_sync();
-  /** Record the calls of all objects anew. */
-  void record(const SurfaceRecording &recording);
+  /** Record the calls of all objects anew, unless \a inputs and objects are those of the last recording. */
+  void update(render_scene::RenderScene &scene, ShaderCache &shaders, const SurfaceInputs &inputs, const BindLit &bind);
+  /** Let the next update() record, because the passes refer to what no longer exists. */
+  void forget()
+  {
+    recorded_.reset();
+  }
 
   /** In the order of their first sync. Recorded when at least one of them is visible. */
   [[nodiscard]] const std::vector<draw::ObjectIndex> &objects() const
   {
     return objects_;
   }
-  /** The matrix of an object became mirrored or ceased to be mirrored since the passes were recorded. */
-  [[nodiscard]] bool is_winding_changed() const
+  /** \see Report::pass_recordings */
+  [[nodiscard]] std::uint64_t recording_count() const
   {
-    return is_winding_changed_;
+    return recording_count_;
   }
   [[nodiscard]] bool has_tint() const
   {
@@ -69,6 +86,12 @@ class SurfacePasses {
   [[nodiscard]] FrameStep step();
 
  private:
+  struct Recording {
+    render_scene::RenderScene &scene;
+    ShaderCache &shaders;
+    const SurfaceInputs &inputs;
+    const BindLit &bind;
+  };
   /** Key of the recording of an object, beside its index. All objects of a mesh are of one kind, or of few. */
   struct Kind {
     gpu::BatchRange batch{};
@@ -79,7 +102,21 @@ class SurfacePasses {
     const gpu::Shader *blend_shader = nullptr;
   };
   /** Make the groups for the objects of the kind of \a first. */
-  Kind record_kind(const SurfaceRecording &recording, draw::ObjectIndex first);
+  Kind record_kind(const Recording &recording, draw::ObjectIndex first);
+  /** What the passes of Inspection need of the objects of a kind. */
+  struct Inspected {
+    render_scene::MaterialClass surface = render_scene::MaterialClass::Plain;
+    render_scene::TextureSet textures{};
+    FunctionText function{};
+    /** Features of a program that lights them. */
+    Feature lighting = Feature::None;
+    gpu::State state = gpu::State::None;
+  };
+  void record_inspection(Kind &kind, const Recording &recording, const Inspected &inspected);
+  /** Add a group of \a pass to the kind. \a bind binds the resources of a new group, beside \a textures. */
+  void add_group(Kind &kind, const Recording &recording, draw::Pass &pass, const gpu::Shader &shader, gpu::State state,
+                 render_scene::MaterialClass read, const render_scene::TextureSet &textures, const BindLit &bind);
+  void record(const Recording &recording);
   [[nodiscard]] Need need(const FrameState &state) const;
 
   const RenderBuffers &buffers_;
@@ -94,7 +131,10 @@ class SurfacePasses {
   bool is_collecting_ = false;
   /** By object index: whether the passes were recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored_;
-  bool is_winding_changed_ = false;
+  /** Since the passes were recorded, objects were added or removed, or their winding changed. */
+  bool are_objects_changed_ = true;
+  std::optional<SurfaceInputs> recorded_;
+  std::uint64_t recording_count_ = 0;
   std::map<GroupKey, draw::ShadingGroup *> groups_;
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gpu_shader.hh"
+#include "gpu_state.hh"
 
 #include <span>
 
@@ -21,14 +22,7 @@ enum class Feature : std::uint32_t {
   HiddenLines = 1U << 2,
 };
 
-constexpr Feature operator|(Feature a, Feature b)
-{
-  return Feature(std::uint32_t(a) | std::uint32_t(b));
-}
-constexpr Feature operator&(Feature a, Feature b)
-{
-  return Feature(std::uint32_t(a) & std::uint32_t(b));
-}
+GNOMON_MASK_OPERATORS(Feature)
 
 /** One program. */
 struct ShaderDeclaration {

@@ -38,12 +38,7 @@ void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw
 
 static PictureKey picture_key(render_scene::RenderScene &scene, std::uint64_t settings)
 {
-  return {scene.objects().revision(),
-          scene.lamps_revision(),
-          scene.passes_revision(),
-          scene.materials_revision(),
-          settings,
-          scene.host_content_revision()};
+  return {.scene = scene.revision(), .settings = settings};
 }
 
 Engine::Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}

@@ -60,12 +60,8 @@ struct PassesKey {
 
 /** Revisions of everything that a picture depends on, except its view and size. */
 struct PictureKey {
-  std::uint64_t objects = 0;
-  std::uint64_t lamps = 0;
-  std::uint64_t passes = 0;
-  std::uint64_t materials = 0;
+  std::uint64_t scene = 0;
   std::uint64_t settings = 0;
-  std::uint64_t host_content = 0;
 
   bool operator==(const PictureKey &) const = default;
 };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gpu_shader.hh"
+#include "gpu_state.hh"
 
 #include <span>
 
@@ -21,18 +22,7 @@ enum class Feature : std::uint32_t {
   TargetDepth = 1U << 4,
 };
 
-constexpr Feature operator|(Feature a, Feature b)
-{
-  return Feature(std::uint32_t(a) | std::uint32_t(b));
-}
-constexpr Feature operator&(Feature a, Feature b)
-{
-  return Feature(std::uint32_t(a) & std::uint32_t(b));
-}
-constexpr bool has(Feature mask, Feature any)
-{
-  return (mask & any) != Feature::None;
-}
+GNOMON_MASK_OPERATORS(Feature)
 
 /** Declaration of a shader program. */
 struct ShaderDeclaration {

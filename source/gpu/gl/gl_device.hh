@@ -161,6 +161,8 @@ class GlDevice final : public Device {
   /** Begins a stream segment for \a list and copies its draws and instances into it. */
   void write_stream(const CommandList &list);
   void begin_pass(std::string_view name, const CommandList::PassInfo &pass);
+  /** Clear or invalidate the attachments as \a actions say. \pre their write masks are enabled */
+  void load_attachments(const GlFramebuffer &framebuffer, const PassActions &actions, bool is_of_host) const;
   void end_pass();
   /** The render target of \a pass. The reference is valid until the next call. */
   [[nodiscard]] const GlFramebuffer &framebuffer_of(const CommandList::PassInfo &pass);

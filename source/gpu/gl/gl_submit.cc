@@ -281,6 +281,11 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
   }
   // Clears respect the write masks.
   set_state(State::WriteColor | State::WriteDepth);
+  load_attachments(framebuffer, actions, pass.host_framebuffer.has_value());
+}
+
+void GlDevice::load_attachments(const GlFramebuffer &framebuffer, const PassActions &actions, bool is_of_host) const
+{
   std::vector<GLenum> discarded;
   for (GLuint i = 0; i < framebuffer.color_count; i++) {
     if (actions.color_load == LoadAction::Clear) {
@@ -302,7 +307,7 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
       discarded.push_back(GL_DEPTH_ATTACHMENT);
     }
   }
-  if (!discarded.empty() && !pass.host_framebuffer) {
+  if (!discarded.empty() && !is_of_host) {
     glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
   }
 }

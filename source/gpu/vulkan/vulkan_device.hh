@@ -175,6 +175,8 @@ class VulkanDevice final : public Device {
   static void check_host_image(std::string_view pass_name, const VulkanFramebuffer &framebuffer,
                                const PassActions &actions);
   void begin_pass(std::string_view name, const CommandList::PassInfo &pass, const PassTextures &used);
+  /** Make the textures \a used ready for lookups of the pass. */
+  void prepare_lookups(const VulkanFramebuffer &framebuffer, const PassActions &actions, const PassTextures &used);
   /** Copies the texture \a id for a pass that looks it up while it draws into it. */
   void copy_attachment(ResourceId id);
   void end_pass();

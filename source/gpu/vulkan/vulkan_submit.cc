@@ -219,17 +219,9 @@ void VulkanDevice::check_host_image(std::string_view pass_name, const VulkanFram
   }
 }
 
-void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pass, const PassTextures &used)
+void VulkanDevice::prepare_lookups(const VulkanFramebuffer &framebuffer, const PassActions &actions,
+                                   const PassTextures &used)
 {
-  if (pass.host_framebuffer) {
-    throw Error("pass '{}': a device of Vulkan has no framebuffers of the host", name);
-  }
-  const VulkanFramebuffer &framebuffer = framebuffers_.at(pass.framebuffer);
-  if (framebuffer.host) {
-    check_host_image(name, framebuffer, pass.actions);
-  }
-  const PassActions &actions = pass.actions;
-  VkCommandBuffer commands = submissions_.commands();
   // Those that are looked up while they are drawn into are copied first.
   list_.copied.clear();
   for (const VulkanAttachment &color : framebuffer.colors) {
@@ -243,6 +235,20 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
       barriers_.before_use(textures_.at(id).image, use::sampled);
     }
   }
+}
+
+void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pass, const PassTextures &used)
+{
+  if (pass.host_framebuffer) {
+    throw Error("pass '{}': a device of Vulkan has no framebuffers of the host", name);
+  }
+  const VulkanFramebuffer &framebuffer = framebuffers_.at(pass.framebuffer);
+  if (framebuffer.host) {
+    check_host_image(name, framebuffer, pass.actions);
+  }
+  const PassActions &actions = pass.actions;
+  VkCommandBuffer commands = submissions_.commands();
+  prepare_lookups(framebuffer, actions, used);
   const bool is_encoded = actions.is_srgb_encoded;
   std::vector<VkRenderingAttachmentInfo> colors;
   list_.pipeline.colors = {};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "shadows/shadow_casters.hh"
+#include "shadows/shadow_plan.hh"
 #include "shadows/shadows.hh"
 
 #include "eevee_shaders.hh"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadows/shadow_sun_fit.hh"
 
+#include "shadows/shadow_casters.hh"
 #include "shadows/shadow_view_volume.hh"
 
 #include <gtest/gtest.h>

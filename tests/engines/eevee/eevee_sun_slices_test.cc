@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Cascades that are fitted to the surfaces of a picture.
+#include "shadows/shadow_casters.hh"
 #include "shadows/shadow_sun_fit.hh"
 #include "shadows/shadow_sun_slices.hh"
 #include "shadows/shadow_view_volume.hh"

@@ -176,5 +176,25 @@ TEST_F(ViewportsTest, NothingStaysAfterTheLastViewport)
   EXPECT_GT(layers_drawn(third), 0U);
 }
 
+TEST_F(ViewportsTest, SettingRecordsPassesOnlyIfTheyDependOnIt)
+{
+  draw::Viewport viewport(*device, {16, 16});
+  draw(viewport, above);
+  const auto recordings_after = [&](void (*change)(Settings &)) {
+    const std::uint64_t before = Inspection(*engine, viewport).report().pass_recordings;
+    change(settings);
+    engine->set_settings(settings);
+    draw(viewport, above);
+    return Inspection(*engine, viewport).report().pass_recordings - before;
+  };
+  EXPECT_EQ(recordings_after([](Settings &one) { one.seed = 3; }), 0U);
+  EXPECT_EQ(recordings_after([](Settings &one) { one.background.kind = Background::Kind::Color; }), 0U);
+  EXPECT_EQ(recordings_after([](Settings &one) { one.shadow.esm.bias = 2.0F; }), 0U);
+  EXPECT_EQ(recordings_after([](Settings &one) { one.has_cascade_tint = true; }), 1U);
+  EXPECT_EQ(recordings_after([](Settings &one) { one.has_surfaces = true; }), 1U);
+  EXPECT_EQ(recordings_after([](Settings &one) { one.shadow.kind = scene::ShadowKind::Pcf; }), 1U);
+  EXPECT_EQ(recordings_after([](Settings &one) { one.shadow.pcf = PcfKernel{5}; }), 1U);
+}
+
 }  // namespace
 }  // namespace gnomon::eevee

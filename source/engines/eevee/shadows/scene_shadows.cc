@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene_shadows.hh"
+#include "scene_shadows_state.hh"
 
 #include "shadow_octahedral.hh"
 #include "shadow_spot.hh"
@@ -76,10 +76,14 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   slot.partial = old.partial;
 }
 
+SceneShadows::SceneShadows() : state_(std::make_unique<State>()) {}
+
+SceneShadows::~SceneShadows() = default;
+
 template <typename Action>
 void SceneShadows::for_each_slot(Action &&action)
 {
-  std::ranges::for_each(slots_, action);
+  std::ranges::for_each(state_->slots, action);
   for (Shadows *viewport : viewports_) {
     std::ranges::for_each(viewport->slots_, action);
   }
@@ -91,7 +95,7 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
 {
   check(settings);
   const LayerPass layer_pass = best_layer_pass(settings.layer_pass, device_limits);
-  ShadowPlan plan = plan_shadows(lamps, settings, device_limits, plan_, std::max(int(viewports_.size()), 1));
+  ShadowPlan plan = plan_shadows(lamps, settings, device_limits, state_->plan, std::max(int(viewports_.size()), 1));
   std::vector<EsmLamp> esm_lamps;
   for (const ShadowPlace &place : plan.places) {
     if (place.given.array == ShadowArrayId::DistanceCube) {
@@ -104,16 +108,16 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
 
   // The code below does not throw, so that a failed sync leaves the shadows unchanged.
   layer_pass_ = layer_pass;
-  plan_ = std::move(plan);
-  esm_lamps_ = std::move(esm_lamps);
+  state_->plan = std::move(plan);
+  state_->esm_lamps = std::move(esm_lamps);
   bounds_ws_ = bounds_ws;
-  casters_.begin();
+  state_->casters.begin();
   const bool is_kept = settings.caster_faces == settings_.caster_faces;
   settings_ = settings;
   /** \a viewport: LayerOwner::viewport. */
   const auto replace = [&](std::vector<ShadowSlot> &slots, std::uint64_t viewport) {
     std::vector<ShadowSlot> before = std::exchange(slots, {});
-    for (const ShadowPlace &place : plan_.places) {
+    for (const ShadowPlace &place : state_->plan.places) {
       if (place.technique->follows_view() == (viewport != 0)) {
         slots.push_back(
             {.lamp = lamps[place.lamp], .place = place, .size_px = place.given.size_px, .viewport = viewport});
@@ -123,7 +127,7 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
       }
     }
   };
-  replace(slots_, 0);
+  replace(state_->slots, 0);
   for (Shadows *viewport : viewports_) {
     replace(viewport->slots_, viewport->id_);
     viewport->seen_.reset();
@@ -131,8 +135,8 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
   }
   std::vector<LayerOwner> owners;
   for_each_slot([&](const ShadowSlot &slot) { owners.push_back({slot.lamp.key, slot.viewport}); });
-  map_runs_.keep_only(owners);
-  for (const ShadowPlace &place : plan_.places) {
+  state_->map_runs.keep_only(owners);
+  for (const ShadowPlace &place : state_->plan.places) {
     shared::LightData &light = lights[std::size_t(lamps[place.lamp].light)];
     light.shadow_kind = place.technique->light_shadow_kind();
     light.shadow_index = place.entry;
@@ -150,7 +154,7 @@ void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
       has_content = has_content || ((slot.drawn != 0 || slot.partial) && id != ShadowArrayId::DistanceCube);
     }
   });
-  LayerArray &array = arrays_[std::size_t(id)];
+  LayerArray &array = state_->arrays[std::size_t(id)];
   const int size_now = array.texture() ? array.texture().desc().width : 0;
   if (id == ShadowArrayId::Maps && settings_.cascades.can_resize && size_now >= size_px &&
       size_now <= size_px + size_px / 2) {
@@ -158,7 +162,7 @@ void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
     size_px = size_now;
   }
   array.resize(device, size_px, layers, has_content);
-  bindings_[std::size_t(id)] =
+  state_->bindings[std::size_t(id)] =
       array.texture() ? draw::TextureBinding{array.texture().id(), sampler_.id()} : draw::TextureBinding{};
 }
 
@@ -167,15 +171,15 @@ void SceneShadows::allocate(gpu::Device &device, ShaderCache &shaders)
   if (cube_count() + map_count() > 0 && !sampler_) {
     sampler_ = device.create_sampler({.name = "shadow_sampler"});
   }
-  resize(device, ShadowArrayId::Cubes, plan_.cubes.end());
+  resize(device, ShadowArrayId::Cubes, state_->plan.cubes.end());
   resize(device, ShadowArrayId::DistanceCube, lamp_count(ShadowArrayId::DistanceCube) > 0 ? 6 : 0);
   if (map_count() == 0) {
     resize(device, ShadowArrayId::Maps, 0);
   }
-  octahedral_.sync(device, shaders, esm_lamps_);
-  for (ShadowSlot &slot : slots_) {
+  state_->octahedral.sync(device, shaders, state_->esm_lamps);
+  for (ShadowSlot &slot : state_->slots) {
     if (slot.place.given.array == ShadowArrayId::DistanceCube &&
-        octahedral_.must_record(std::size_t(slot.place.entry))) {
+        state_->octahedral.must_record(std::size_t(slot.place.entry))) {
       slot.invalidate(~0U);
     }
   }
@@ -188,7 +192,7 @@ void SceneShadows::place_render_blocks(gpu::Device &device)
   const std::uint32_t alignment = device.limits().uniform_offset_alignment;
   const auto stride = std::uint32_t((sizeof(shared::ShadowRenderBlock) + alignment - 1) / alignment * alignment);
   for_each_slot([&](ShadowSlot &slot) { slot.render_offset_bytes = stride * std::uint32_t(slot.place.index); });
-  const std::size_t size = plan_.places.size() * stride;
+  const std::size_t size = state_->plan.places.size() * stride;
   if (size == 0) {
     render_buffer_ = {};
   }
@@ -200,14 +204,14 @@ void SceneShadows::place_render_blocks(gpu::Device &device)
 
 void SceneShadows::finish()
 {
-  casters_.finish();
+  state_->casters.finish();
   std::vector<glm::vec3> positions_ws;
   for_each_slot([&](ShadowSlot &slot) {
-    update_for_casters(slot, casters_);
+    update_for_casters(slot, state_->casters);
     positions_ws.push_back(slot.lamp.position_ws());
   });
-  casters_.distances().keep_only(positions_ws, casters_.list());
-  casters_.forget_meshes();
+  state_->casters.distances().keep_only(positions_ws, state_->casters.list());
+  state_->casters.forget_meshes();
 }
 
 /**
@@ -216,10 +220,10 @@ void SceneShadows::finish()
  */
 void SceneShadows::choose_map_format()
 {
-  LayerArray &maps = arrays_[std::size_t(ShadowArrayId::Maps)];
+  LayerArray &maps = state_->arrays[std::size_t(ShadowArrayId::Maps)];
   const bool has_long_maps = maps.texture() && maps.format() == gpu::Format::Depth32F;
   scene::Bounds surfaces_ws = bounds_ws_;
-  surfaces_ws.extend(casters_.bounds_ws());
+  surfaces_ws.extend(state_->casters.bounds_ws());
   bool is_short = settings_.can_have_short_maps && !has_long_maps;
   for_each_slot([&](const ShadowSlot &slot) {
     is_short = is_short && (slot.place.given.array != ShadowArrayId::Maps ||
@@ -247,7 +251,7 @@ void SceneShadows::place_maps(gpu::Device &device)
   const auto place_all = [&](auto &&is_placed) {
     for_each_slot([&](ShadowSlot &slot) {
       if (slot.place.given.array == ShadowArrayId::Maps && is_placed(slot)) {
-        const int first_layer = map_runs_.place({slot.lamp.key, slot.viewport}, int(slot.views.size()));
+        const int first_layer = state_->map_runs.place({slot.lamp.key, slot.viewport}, int(slot.views.size()));
         if (first_layer != slot.place.first_layer) {
           slot.place.first_layer = first_layer;
           slot.invalidate(~0U);
@@ -257,21 +261,21 @@ void SceneShadows::place_maps(gpu::Device &device)
     });
   };
   const auto grows = [&](const ShadowSlot &slot) {
-    return int(slot.views.size()) > map_runs_.count_of({slot.lamp.key, slot.viewport});
+    return int(slot.views.size()) > state_->map_runs.count_of({slot.lamp.key, slot.viewport});
   };
   // Place the runs that do not grow first, because they may release layers for those that grow.
   place_all([&](const ShadowSlot &slot) { return !grows(slot); });
   place_all(grows);
-  if (map_runs_.end() > plan_.map_layers_max) {
+  if (state_->map_runs.end() > state_->plan.map_layers_max) {
     // With the gaps between runs, the array exceeds the limit. Place all runs again without gaps.
-    map_runs_.clear();
+    state_->map_runs.clear();
     layers_max = 0;
     place_all([](const ShadowSlot & /*slot*/) { return true; });
   }
   // The array keeps its layers, up to the maximum of the current lamps, so that a view that needs more cascades than
   // the last view seldom needs a new texture.
   const int layers_now = array(ShadowArrayId::Maps).layer_count();
-  resize(device, ShadowArrayId::Maps, std::max(map_runs_.end(), std::min(layers_now, layers_max)));
+  resize(device, ShadowArrayId::Maps, std::max(state_->map_runs.end(), std::min(layers_now, layers_max)));
 }
 
 void SceneShadows::invalidate()
@@ -285,16 +289,71 @@ void SceneShadows::invalidate()
 Feature SceneShadows::features() const
 {
   Feature features = Feature::None;
-  for (const ShadowPlace &place : plan_.places) {
+  for (const ShadowPlace &place : state_->plan.places) {
     features = features | place.technique->features(place.kind);
   }
   return features;
 }
 
+void SceneShadows::add_caster(const Caster &caster)
+{
+  state_->casters.add(caster);
+}
+
+const LayerArray &SceneShadows::array(ShadowArrayId id) const
+{
+  return state_->arrays[std::size_t(id)];
+}
+
+const gpu::Texture &SceneShadows::cubes() const
+{
+  return array(ShadowArrayId::Cubes).texture();
+}
+
+const gpu::Texture &SceneShadows::maps() const
+{
+  return array(ShadowArrayId::Maps).texture();
+}
+
+const gpu::Texture &SceneShadows::distance_cube() const
+{
+  return array(ShadowArrayId::DistanceCube).texture();
+}
+
+const OctahedralStore &SceneShadows::octahedral() const
+{
+  return state_->octahedral;
+}
+
+const std::vector<std::string> &SceneShadows::warnings() const
+{
+  return state_->plan.warnings;
+}
+
+std::uint64_t SceneShadows::triangles_visited() const
+{
+  return state_->casters.distances().triangles_visited();
+}
+
+std::size_t SceneShadows::cube_count() const
+{
+  return lamp_count(ShadowArrayId::Cubes);
+}
+
+std::size_t SceneShadows::map_count() const
+{
+  return lamp_count(ShadowArrayId::Maps);
+}
+
+std::size_t SceneShadows::esm_count() const
+{
+  return lamp_count(ShadowArrayId::DistanceCube);
+}
+
 std::size_t SceneShadows::lamp_count(ShadowArrayId id) const
 {
   return std::size_t(
-      std::ranges::count_if(plan_.places, [id](const ShadowPlace &place) { return place.given.array == id; }));
+      std::ranges::count_if(state_->plan.places, [id](const ShadowPlace &place) { return place.given.array == id; }));
 }
 
 }  // namespace gnomon::eevee

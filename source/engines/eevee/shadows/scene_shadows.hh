@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadow_casters.hh"
-#include "shadow_octahedral_store.hh"
-#include "shadow_plan.hh"
-#include "shadow_technique.hh"
+#include "eevee_features.hh"
+#include "eevee_shadow_settings.hh"
 
-#include "draw_pass.hh"
+#include "eevee_light_shared.h"
+#include "gpu_device.hh"
+#include "scene.hh"
 
-#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace gnomon::eevee {
 
+struct Caster;
+class LayerArray;
+class OctahedralStore;
+class ShaderCache;
+enum class ShadowArrayId : std::uint8_t;
+struct ShadowLamp;
 class Shadows;
 
 /**
@@ -26,9 +35,10 @@ class Shadows;
  */
 class SceneShadows {
  public:
-  SceneShadows() = default;
+  SceneShadows();
   SceneShadows(const SceneShadows &) = delete;
   SceneShadows &operator=(const SceneShadows &) = delete;
+  ~SceneShadows();
 
   /**
    * Plan the shadows of \a lamps, and write shadow_kind and shadow_index of their entries in \a lights. Creates no
@@ -41,10 +51,7 @@ class SceneShadows {
             std::span<shared::LightData> lights, const ShadowSettings &settings);
   /** Create the resources of the plan and free those that are no longer needed. \a shaders: for the filter passes. */
   void allocate(gpu::Device &device, ShaderCache &shaders);
-  void add_caster(const Caster &caster)
-  {
-    casters_.add(caster);
-  }
+  void add_caster(const Caster &caster);
   /** Call after the last add_caster. */
   void finish();
   /** Mark all layers as out of date, for example because the shaders changed. */
@@ -69,58 +76,35 @@ class SceneShadows {
   /** Features that shaders need for the shadows of the lamps. Valid after sync. */
   [[nodiscard]] Feature features() const;
 
-  [[nodiscard]] const gpu::Texture &cubes() const
-  {
-    return array(ShadowArrayId::Cubes).texture();
-  }
+  [[nodiscard]] const gpu::Texture &cubes() const;
   /** Created by the first Shadows::update, because the number of layers depends on the views. */
-  [[nodiscard]] const gpu::Texture &maps() const
-  {
-    return array(ShadowArrayId::Maps).texture();
-  }
-  [[nodiscard]] const gpu::Texture &distance_cube() const
-  {
-    return array(ShadowArrayId::DistanceCube).texture();
-  }
+  [[nodiscard]] const gpu::Texture &maps() const;
+  [[nodiscard]] const gpu::Texture &distance_cube() const;
   /** The buffer with the matrices for drawing casters: one ShadowRenderBlock for each lamp with a shadow. */
   [[nodiscard]] const gpu::Buffer &render_blocks() const
   {
     return render_buffer_;
   }
   /** \see ShadowPlan */
-  [[nodiscard]] const std::vector<std::string> &warnings() const
-  {
-    return plan_.warnings;
-  }
+  [[nodiscard]] const std::vector<std::string> &warnings() const;
   [[nodiscard]] const std::vector<std::string> &limits() const
   {
     return limits_;
   }
   /** Number of triangles that were visited to compute the distances of near planes, since the start. */
-  [[nodiscard]] std::uint64_t triangles_visited() const
-  {
-    return casters_.distances().triangles_visited();
-  }
-  [[nodiscard]] std::size_t cube_count() const
-  {
-    return lamp_count(ShadowArrayId::Cubes);
-  }
-  [[nodiscard]] std::size_t map_count() const
-  {
-    return lamp_count(ShadowArrayId::Maps);
-  }
-  [[nodiscard]] const OctahedralStore &octahedral() const
-  {
-    return octahedral_;
-  }
+  [[nodiscard]] std::uint64_t triangles_visited() const;
+  [[nodiscard]] std::size_t cube_count() const;
+  [[nodiscard]] std::size_t map_count() const;
+  [[nodiscard]] std::size_t esm_count() const;
+  [[nodiscard]] const OctahedralStore &octahedral() const;
 
  private:
   friend class Shadows;
 
-  [[nodiscard]] const LayerArray &array(ShadowArrayId id) const
-  {
-    return arrays_[std::size_t(id)];
-  }
+  /** The members whose types only shadows need to know. */
+  struct State;
+
+  [[nodiscard]] const LayerArray &array(ShadowArrayId id) const;
   [[nodiscard]] std::size_t lamp_count(ShadowArrayId id) const;
   /** Calls \a action with the shared slots and with the slots of all viewports. */
   template <typename Action>
@@ -132,27 +116,15 @@ class SceneShadows {
 
   ShadowSettings settings_;
   LayerPass layer_pass_ = LayerPass::Single;
-  ShadowPlan plan_;
-  /** Slots of the lamps whose layers all viewports share, in the order of the lamps. */
-  std::vector<ShadowSlot> slots_;
+  std::unique_ptr<State> state_;
   std::vector<Shadows *> viewports_;
   std::uint64_t viewports_revision_ = 0;
   /** \see VisibleRange::revision */
   std::uint64_t last_visible_revision_ = 0;
   /** LayerOwner::viewport of the viewport that was added last. */
   std::uint64_t last_viewport_ = 0;
-  ShadowCasters casters_;
   /** Bounds of all objects: those that cast no shadow can receive one. */
   scene::Bounds bounds_ws_;
-  /** Indexed by ShadowArrayId. */
-  std::array<LayerArray, shadow_array_count> arrays_ = {LayerArray("shadow_cubes", gpu::Format::Depth32F),
-                                                        LayerArray("shadow_maps", gpu::Format::Depth32F),
-                                                        LayerArray("shadow_distance_cube", gpu::Format::Depth32F)};
-  std::array<draw::TextureBinding, shadow_array_count> bindings_;
-  LayerRuns map_runs_;
-  /** The requests of the lamps with an octahedral layer. */
-  std::vector<EsmLamp> esm_lamps_;
-  OctahedralStore octahedral_;
   gpu::Sampler sampler_;
   gpu::Buffer render_buffer_;
   gpu::BufferRange render_block_;

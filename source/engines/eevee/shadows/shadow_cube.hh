@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadow_technique.hh"
+#include "draw_view.hh"
+#include "scene.hh"
 
 #include <array>
 
 namespace gnomon::eevee {
+
+class ShadowTechnique;
 
 /** Rotations from world space to the view space of each face, in OpenGL's order: +X, -X, +Y, -Y, +Z, -Z. */
 extern const std::array<glm::mat4, 6> cubefacemat;

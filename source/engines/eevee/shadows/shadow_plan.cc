@@ -28,15 +28,6 @@ float ShadowLamp::shadow_range() const
   return std::min(range > 0.0F ? range : infinity, shadow.clip_end.value_or(infinity));
 }
 
-float widest_half_angle(const scene::PlacedLamp &lamp)
-{
-  const glm::dvec2 scale = lamp.kind == scene::LampKind::Spot ? scene::spot_scale(lamp) : glm::dvec2(1.0);
-  const double widest = std::max(scale.x, scale.y);
-  const double angle = lamp.spot_outer_angle;
-  // atan2, because the tangent of the float nearest to π/2, which is more than π/2, is negative.
-  return widest == 1.0 ? lamp.spot_outer_angle : float(std::atan2(widest * std::sin(angle), std::cos(angle)));
-}
-
 std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, LampShading shading)
 {
   std::vector<ShadowLamp> result;

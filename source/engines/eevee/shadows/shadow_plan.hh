@@ -51,23 +51,12 @@ struct ShadowLamp {
   [[nodiscard]] float shadow_range() const;
 };
 
-/** Half angle of the smallest circular cone that contains a spot's elliptical cone, radians. */
-[[nodiscard]] float widest_half_angle(const scene::PlacedLamp &lamp);
-
 /**
  * The lamps of all lights, in the order of \a placed, which is their priority. \a placed: the list from which \a lamps
  * was made. The key of a lamp is the key of its node.
  */
 [[nodiscard]] std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps,
                                                    LampShading shading = LampShading::Whole);
-
-/**
- * The shadow kind of a lamp: \a asked, or else the kind of \a settings. None if \a settings disable shadows and for
- * hemi lamps. Pcf for a sun that requests Esm or Evsm.
- */
-[[nodiscard]] scene::ShadowKind shadow_kind(scene::LampKind lamp, std::optional<scene::ShadowKind> asked,
-                                            const ShadowSettings &settings);
-[[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
 
 /** The array textures of depths. All layers of an array have the size of the largest shadow in the array. */
 enum class ShadowArrayId : std::uint8_t {

@@ -54,7 +54,7 @@ double short_depth_error(const ShadowSlot &slot, const scene::Bounds &bounds_ws)
   return largest;
 }
 
-void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
+void MapTechnique::write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const
 {
   const int size_px = slot.size_px;
   const bool has_layers = (slot.drawn | slot.recorded_drawn) != 0;
@@ -77,8 +77,10 @@ void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
   }
 }
 
-double map_texel_size(const ShadowSlot &slot, const shared::ShadowBlock &block, const glm::dvec3 &position_ws)
+double MapTechnique::texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
+                                const glm::dvec3 &position_ws) const
 {
+  const shared::ShadowBlock &block = inspection.block;
   const int first = slot.place.entry;
   for (int i = first; i < first + block.maps[first].cascade_count; i++) {
     const shared::ShadowMapData &map = block.maps[i];
@@ -93,22 +95,12 @@ double map_texel_size(const ShadowSlot &slot, const shared::ShadowBlock &block, 
 
 namespace {
 
-class SpotTechnique final : public ShadowTechnique {
+class SpotTechnique final : public MapTechnique {
  public:
   bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const override
   {
     const bool is_depth = kind == scene::ShadowKind::Hard || kind == scene::ShadowKind::Pcf;
     return is_depth && lamp.kind == scene::LampKind::Spot && !has_cube(lamp.kind, lamp.spot_outer_angle);
-  }
-
-  int light_shadow_kind() const override
-  {
-    return SHADOW_MAP;
-  }
-
-  Feature features(scene::ShadowKind kind) const override
-  {
-    return Feature::ShadowMap | (kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
   }
 
   ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
@@ -149,21 +141,10 @@ class SpotTechnique final : public ShadowTechnique {
     return is_outside ? 0U : 1U;
   }
 
-  void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override
-  {
-    write_map_data(slot, block);
-  }
-
   void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const override
   {
     // A map without a caster is not cleared, because lookups skip it. \see ShadowMapData::cascade_count
     record_depths(slot, part, false, recording);
-  }
-
-  double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
-                    const glm::dvec3 &position_ws) const override
-  {
-    return map_texel_size(slot, inspection.block, position_ws);
   }
 
   ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override

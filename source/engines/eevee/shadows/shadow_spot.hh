@@ -35,10 +35,20 @@ inline constexpr double short_depth_error_max = 0.1;
  */
 [[nodiscard]] double short_depth_error(const ShadowSlot &slot, const scene::Bounds &bounds_ws);
 
-/** Write the entries of \a slot's maps, for a spot or a sun. */
-void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block);
-/** ShadowTechnique::texel_size of the finest map that contains the position; 0 if there is none. */
-[[nodiscard]] double map_texel_size(const ShadowSlot &slot, const shared::ShadowBlock &block,
-                                    const glm::dvec3 &position_ws);
+/** Planar maps of spots and suns. */
+class MapTechnique : public ShadowTechnique {
+ public:
+  int light_shadow_kind() const override
+  {
+    return SHADOW_MAP;
+  }
+  Feature features(scene::ShadowKind kind) const override
+  {
+    return Feature::ShadowMap | (kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
+  }
+  void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override;
+  double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
+                    const glm::dvec3 &position_ws) const override;
+};
 
 }  // namespace gnomon::eevee

@@ -29,21 +29,11 @@ bool is_resized(const ShadowLamp &lamp, const ShadowSettings &settings)
          !lamp.shadow.size;
 }
 
-class SunTechnique final : public ShadowTechnique {
+class SunTechnique final : public MapTechnique {
  public:
   bool serves(const ShadowLamp &lamp, scene::ShadowKind /*kind*/) const override
   {
     return lamp.kind == scene::LampKind::Sun;
-  }
-
-  int light_shadow_kind() const override
-  {
-    return SHADOW_MAP;
-  }
-
-  Feature features(scene::ShadowKind kind) const override
-  {
-    return Feature::ShadowMap | (kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
   }
 
   ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
@@ -104,21 +94,10 @@ class SunTechnique final : public ShadowTechnique {
     return slot.all_layers();
   }
 
-  void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override
-  {
-    write_map_data(slot, block);
-  }
-
   void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const override
   {
     // Lookups read cascades without a caster, too, so that they must be cleared.
     record_depths(slot, part, true, recording);
-  }
-
-  double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
-                    const glm::dvec3 &position_ws) const override
-  {
-    return map_texel_size(slot, inspection.block, position_ws);
   }
 
   ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadow_sun_fit.hh"
 
+#include "shadow_casters.hh"
 #include "shadow_sun_slices.hh"
 
 #include <glm/geometric.hpp>

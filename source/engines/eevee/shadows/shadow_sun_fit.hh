@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadow_casters.hh"
 #include "shadow_crop.hh"
 
 #include "eevee_shadow_settings.hh"
@@ -17,6 +16,8 @@
 #include <vector>
 
 namespace gnomon::eevee {
+
+struct Caster;
 
 /**
  * Edge of the texels, in pixels, for which cascades around visible surfaces suffice. Larger texels need one more

@@ -108,40 +108,21 @@ double range_error(const SurfaceRange &range, const glm::dvec2 &texel)
   return range.weight() * 0.5 * glm::dot(texel, texel) / (range.pixel * range.pixel);
 }
 
-/** A choice of slices for the ranges up to some range. */
-struct SliceChoice {
-  double error = unbounded;
-  /** First range of the last slice. */
-  std::size_t first = 0;
+/** Error of the ranges from an index on without a slice. */
+using ErrorsBehind = std::array<double, range_count + 1>;
+
+/** The best slice of a run of ranges. */
+struct SliceRun {
+  double error = 0.0;
+  /** Empty: its limits are reversed. */
+  SunSlice slice{.min = glm::dvec2(unbounded), .max = glm::dvec2(-unbounded)};
 };
+/** Those of the ranges first to end - 1, at [first][end]. */
+using SliceRuns = std::vector<std::array<SliceRun, range_count + 1>>;
 
-}  // namespace
-
-glm::dmat3 turned(const glm::dmat3 &lamp_from_world, double turn)
+SliceRuns slice_runs(const VisibleRanges &ranges, const SliceConditions &conditions, const ErrorsBehind &errors_behind)
 {
-  const double x = std::cos(turn);
-  const double y = std::sin(turn);
-  return glm::dmat3(x, -y, 0.0, y, x, 0.0, 0.0, 0.0, 1.0) * lamp_from_world;
-}
-
-std::vector<SunSlices> sun_slices(std::span<const VisibleCluster> clusters, const SliceConditions &conditions,
-                                  int count_max)
-{
-  const VisibleRanges ranges = visible_ranges(clusters, conditions);
-  double weight = 0.0;
-  // Error of the ranges from an index on without a slice.
-  std::array<double, range_count + 1> errors_behind{};
-  for (std::size_t i = range_count; i > 0; i--) {
-    weight += ranges[i - 1].weight();
-    errors_behind[i - 1] = errors_behind[i] + range_error(ranges[i - 1], conditions.whole_texel);
-  }
-  /** The best slice of the ranges first to end - 1, at [first][end]. */
-  struct SliceRun {
-    double error = 0.0;
-    /** Empty: its limits are reversed. */
-    SunSlice slice{.min = glm::dvec2(unbounded), .max = glm::dvec2(-unbounded)};
-  };
-  std::vector<std::array<SliceRun, range_count + 1>> runs(range_count);
+  SliceRuns runs(range_count);
   const std::array<SliceRectangle, turn_count> whole = whole_rectangles(conditions);
   for (std::size_t first = 0; first < range_count; first++) {
     std::array<SliceRectangle, turn_count> rectangles;
@@ -165,6 +146,36 @@ std::vector<SunSlices> sun_slices(std::span<const VisibleCluster> clusters, cons
       }
     }
   }
+  return runs;
+}
+
+/** A choice of slices for the ranges up to some range. */
+struct SliceChoice {
+  double error = unbounded;
+  /** First range of the last slice. */
+  std::size_t first = 0;
+};
+
+}  // namespace
+
+glm::dmat3 turned(const glm::dmat3 &lamp_from_world, double turn)
+{
+  const double x = std::cos(turn);
+  const double y = std::sin(turn);
+  return glm::dmat3(x, -y, 0.0, y, x, 0.0, 0.0, 0.0, 1.0) * lamp_from_world;
+}
+
+std::vector<SunSlices> sun_slices(std::span<const VisibleCluster> clusters, const SliceConditions &conditions,
+                                  int count_max)
+{
+  const VisibleRanges ranges = visible_ranges(clusters, conditions);
+  double weight = 0.0;
+  ErrorsBehind errors_behind{};
+  for (std::size_t i = range_count; i > 0; i--) {
+    weight += ranges[i - 1].weight();
+    errors_behind[i - 1] = errors_behind[i] + range_error(ranges[i - 1], conditions.whole_texel);
+  }
+  const SliceRuns runs = slice_runs(ranges, conditions, errors_behind);
   // choices[count][end]: the ranges before `end` have `count` slices.
   std::vector<std::array<SliceChoice, range_count + 1>> choices(std::size_t(count_max) + 1);
   choices[0][0].error = 0.0;

@@ -189,38 +189,44 @@ static void note_recorded(ShadowSlot &slot, const LayerPart &part, LayerMask dra
   }
 }
 
+/** Write the matrices of the slot's views for the pass that draws casters. */
+static void write_render_block(const ShadowSlot &slot, const ShadowRecording &recording)
+{
+  shared::ShadowRenderBlock block{};
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    block.clip_from_world[i] = slot.views[i].clip_from_world();
+  }
+  recording.list.update(recording.render_buffer, slot.render_offset_bytes, std::as_bytes(std::span(&block, 1)));
+  recording.render_block = {recording.render_buffer.id(), slot.render_offset_bytes, sizeof(block)};
+}
+
+/** Record the casters that find_caster_layers found in \a layers. */
+static void record_instances(const ShadowSlot &slot, LayerMask layers, const ShadowRecording &recording)
+{
+  const std::vector<Caster> &casters = recording.casters.list();
+  std::ranges::for_each(recording.casters.calls(), &draw::InstanceCall::clear);
+  for (std::size_t i = 0; i < casters.size(); i++) {
+    for (LayerMask rest = recording.caster_layers[i] & layers; rest != 0; rest &= rest - 1) {
+      casters[i].instances->add(casters[i].object, std::uint32_t(std::countr_zero(rest)));
+      recording.counters.caster_draws++;
+    }
+  }
+  // Casters in front of the near plane are clamped to it, unless the lamp has a clip_start. The pass state has depth
+  // clamping; the argument is the state to remove.
+  recording.pass.record(slot.views.front(), recording.list,
+                        slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
+}
+
 LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_drawn, const ShadowRecording &recording)
 {
   const LayerMask missing = part.layers;
   gpu::CommandList &list = recording.list;
-  const std::vector<Caster> &casters = recording.casters.list();
-  const std::vector<std::uint8_t> &caster_layers = recording.caster_layers;
   const LayerMask with_casters = find_caster_layers(slot, missing, recording);
   const LayerMask drawn = is_empty_drawn ? missing : with_casters;
   if (part.rows) {
     keep_casters_of_rows(slot, std::countr_zero(missing), *part.rows, recording);
   }
-
-  shared::ShadowRenderBlock block{};
-  for (std::size_t i = 0; i < slot.views.size(); i++) {
-    block.clip_from_world[i] = slot.views[i].clip_from_world();
-  }
-  list.update(recording.render_buffer, slot.render_offset_bytes, std::as_bytes(std::span(&block, 1)));
-  recording.render_block = {recording.render_buffer.id(), slot.render_offset_bytes, sizeof(block)};
-
-  const auto record_instances = [&](LayerMask layers) {
-    std::ranges::for_each(recording.casters.calls(), &draw::InstanceCall::clear);
-    for (std::size_t i = 0; i < casters.size(); i++) {
-      for (LayerMask rest = caster_layers[i] & layers; rest != 0; rest &= rest - 1) {
-        casters[i].instances->add(casters[i].object, std::uint32_t(std::countr_zero(rest)));
-        recording.counters.caster_draws++;
-      }
-    }
-    // Casters in front of the near plane are clamped to it, unless the lamp has a clip_start. The pass state has depth
-    // clamping; the argument is the state to remove.
-    recording.pass.record(slot.views.front(), list,
-                          slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
-  };
+  write_render_block(slot, recording);
   fmt::memory_buffer name;
   const auto name_of = [&](std::string_view what, std::optional<int> layer = {}) {
     name.clear();
@@ -246,7 +252,7 @@ LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_d
     list.begin_pass(name_of(layer_name, layer),
                     recording.array.framebuffer(recording.device, slot.place.first_layer + layer), clear);
     if (recording.layer_pass == LayerPass::Single) {
-      record_instances(1U << layer);
+      record_instances(slot, 1U << layer, recording);
     }
     list.end_pass();
   }
@@ -254,7 +260,7 @@ LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_d
     list.begin_pass(name_of("all layers"),
                     recording.array.framebuffer(recording.device, slot.place.first_layer, int(slot.views.size())),
                     is_cleared_at_once ? clear : keep);
-    record_instances(missing);
+    record_instances(slot, missing, recording);
     list.end_pass();
   }
   note_recorded(slot, part, drawn, recording.counters);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadows.hh"
 
+#include "scene_shadows_state.hh"
 #include "shadow_view_volume.hh"
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 
 namespace gnomon::eevee {
 
-Shadows::Shadows(SceneShadows &scene) : scene_(scene), id_(++scene.last_viewport_)
+Shadows::Shadows(SceneShadows &scene)
+    : scene_(scene), id_(++scene.last_viewport_), visible_(std::make_unique<VisibleRange>())
 {
   scene.viewports_.push_back(this);
   scene.viewports_revision_++;
@@ -25,14 +27,14 @@ Shadows::~Shadows()
 template <typename Action>
 void Shadows::for_each_slot(Action &&action)
 {
-  std::ranges::for_each(scene_.slots_, action);
+  std::ranges::for_each(scene_.state_->slots, action);
   std::ranges::for_each(slots_, action);
 }
 
 template <typename Action>
 void Shadows::for_each_slot(Action &&action) const
 {
-  std::ranges::for_each(std::as_const(scene_.slots_), action);
+  std::ranges::for_each(std::as_const(scene_.state_->slots), action);
   std::ranges::for_each(slots_, action);
 }
 
@@ -69,28 +71,28 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   }
   // A visible surface is inside of these bounds, whether it casts a shadow or not.
   scene::Bounds surfaces_ws = scene_.bounds_ws_;
-  surfaces_ws.extend(scene_.casters_.bounds_ws());
-  VisibleRange before = std::move(visible_);
-  visible_ = visible_range(
+  surfaces_ws.extend(scene_.state_->casters.bounds_ws());
+  VisibleRange before = std::move(*visible_);
+  *visible_ = visible_range(
       view, visible_corners(reads_depths() ? widened(view, pixel_size) : view, surfaces_ws, std::move(before.corners)));
-  visible_.clusters = std::move(before.clusters);
-  visible_.boxes = std::move(before.boxes);
-  visible_.revision = before.revision;
+  visible_->clusters = std::move(before.clusters);
+  visible_->boxes = std::move(before.boxes);
+  visible_->revision = before.revision;
   // The points of a sun change with each sample, and the depths do not.
   if (!has_clusters_ || depths.depths.empty() || !reads_depths()) {
-    visible_.clusters = visible_clusters(reads_depths() ? depths : PictureDepths(), std::move(visible_.clusters));
+    visible_->clusters = visible_clusters(reads_depths() ? depths : PictureDepths(), std::move(visible_->clusters));
     has_clusters_ = !depths.depths.empty();
-    visible_.boxes.clear();
-    visible_.revision = ++scene_.last_visible_revision_;
+    visible_->boxes.clear();
+    visible_->revision = ++scene_.last_visible_revision_;
   }
   // Depths of an earlier view do not show all surfaces of this view.
-  const bool has_boxes = !visible_.clusters.empty() && depths.view == view;
-  if (has_boxes == visible_.boxes.empty()) {
-    visible_.boxes = has_boxes ? visible_boxes(visible_.clusters) : std::vector<VisibleBox>();
-    visible_.revision = ++scene_.last_visible_revision_;
+  const bool has_boxes = !visible_->clusters.empty() && depths.view == view;
+  if (has_boxes == visible_->boxes.empty()) {
+    visible_->boxes = has_boxes ? visible_boxes(visible_->clusters) : std::vector<VisibleBox>();
+    visible_->revision = ++scene_.last_visible_revision_;
   }
   for (ShadowSlot &slot : slots_) {
-    slot.place.technique->fit_views(slot, {view, visible_, pixel_size}, scene_.casters_, scene_.settings_);
+    slot.place.technique->fit_views(slot, {view, *visible_, pixel_size}, scene_.state_->casters, scene_.settings_);
   }
   scene_.place_maps(device);
   seen_ = seen;
@@ -193,7 +195,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
   recorded_counters_ = {};
   place_lamps(points);
   fit(device, view, pixel_size, depths);
-  std::ranges::for_each(scene_.slots_, [&](ShadowSlot &slot) { crop_views(slot, visible_); });
+  std::ranges::for_each(scene_.state_->slots, [&](ShadowSlot &slot) { crop_views(slot, *visible_); });
   for_each_slot([](ShadowSlot &slot) { slot.discard_recorded(); });
   // Lamps are recorded array by array. The lamps of the distance cube use the same layers one after the other.
   for (std::size_t id = 0; id < shadow_array_count; id++) {
@@ -202,15 +204,15 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
         return;
       }
       const ShadowTechnique &technique = *slot.place.technique;
-      const LayerMask needed = technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers();
+      const LayerMask needed = technique.layers_needed(slot, *visible_) & slot.looked_up & slot.all_layers();
       const auto missing = [&] { return needed & ~slot.up_to_date & ~slot.recorded_up_to_date; };
       while (missing() != 0 && updated.part_count < parts_max) {
         const int left = parts_max == no_parts_max ? no_parts_max : parts_max - updated.part_count;
         const LayerPart part = next_part(slot, missing(), left);
-        technique.record(
-            slot, part,
-            {device, pass, list, scene_.casters_, scene_.arrays_[id], scene_.octahedral_, scene_.render_buffer_,
-             scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_, is_touching_});
+        technique.record(slot, part,
+                         {device, pass, list, scene_.state_->casters, scene_.state_->arrays[id],
+                          scene_.state_->octahedral, scene_.render_buffer_, scene_.render_block_, scene_.layer_pass_,
+                          recorded_counters_, caster_layers_, is_touching_});
         updated.part_count += part_count(slot, part);
       }
       updated.left_count += missing() != 0 ? part_count(slot, {missing()}) : 0;
@@ -222,7 +224,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
 
 void Shadows::invalidate_blended()
 {
-  const ShadowCasters &casters = scene_.casters_;
+  const ShadowCasters &casters = scene_.state_->casters;
   for_each_slot([&](ShadowSlot &slot) {
     LayerMask touched = 0;
     for (const std::size_t i : casters.blended()) {
@@ -236,7 +238,7 @@ bool Shadows::reads_depths() const
 {
   return scene_.settings_.is_fitted_to_depth &&
          (std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; }) ||
-          std::ranges::any_of(scene_.slots_,
+          std::ranges::any_of(scene_.state_->slots,
                               [](const ShadowSlot &slot) { return slot.place.technique->inner_share(slot) > 0.0; }));
 }
 
@@ -262,11 +264,11 @@ void Shadows::bind(draw::ShadingGroup &group) const
 {
   if (scene_.cube_count() + scene_.map_count() > 0) {
     group.bind_uniform("shadow_block", block_buffer_);
-    group.bind_texture_ref("shadow_cubes", &scene_.bindings_[std::size_t(ShadowArrayId::Cubes)]);
-    group.bind_texture_ref("shadow_maps", &scene_.bindings_[std::size_t(ShadowArrayId::Maps)]);
+    group.bind_texture_ref("shadow_cubes", &scene_.state_->bindings[std::size_t(ShadowArrayId::Cubes)]);
+    group.bind_texture_ref("shadow_maps", &scene_.state_->bindings[std::size_t(ShadowArrayId::Maps)]);
   }
   if (scene_.lamp_count(ShadowArrayId::DistanceCube) > 0) {
-    scene_.octahedral_.bind(group);
+    scene_.state_->octahedral.bind(group);
   }
 }
 
@@ -283,7 +285,7 @@ const ShadowSlot *Shadows::slot_of(const shared::LightData &light) const
 
 ShadowInspection Shadows::inspection(const ShadowSlot &slot) const
 {
-  return {block_, scene_.octahedral_, scene_.array(slot.place.given.array), scene_.casters_.bounds_ws()};
+  return {block_, scene_.state_->octahedral, scene_.array(slot.place.given.array), scene_.state_->casters.bounds_ws()};
 }
 
 std::optional<std::vector<double>> Shadows::texel_sizes(const shared::LightData &light,

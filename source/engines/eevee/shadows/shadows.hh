@@ -3,7 +3,13 @@
 
 #include "scene_shadows.hh"
 
+#include "eevee_frame_tree.hh"
 #include "eevee_lamp_points.hh"
+#include "eevee_picture_depths.hh"
+#include "eevee_shadow_layers.hh"
+
+#include "draw_pass.hh"
+#include "eevee_shadow_shared.h"
 
 #include <limits>
 #include <optional>
@@ -13,6 +19,10 @@
 #include <vector>
 
 namespace gnomon::eevee {
+
+struct ShadowInspection;
+struct ShadowSlot;
+struct VisibleRange;
 
 /** The state of the layers of a light, for reports. */
 struct ShadowState {
@@ -159,7 +169,7 @@ class Shadows {
     bool operator==(const Seen &) const = default;
   };
   std::optional<Seen> seen_;
-  VisibleRange visible_;
+  std::unique_ptr<VisibleRange> visible_;
   /** VisibleRange::clusters of visible_ are those of the last depths. */
   bool has_clusters_ = false;
   shared::ShadowBlock block_{};

@@ -2,7 +2,7 @@
 // Fits linearly transformed cosines to the engine's GGX lobe (Heitz, Dupuy, Hill and Neubelt 2016), integrates its
 // albedo and that of sheen, and writes all three as the table that eevee_tables.hh declares. After a change of the
 // lobe, run it and commit the result:
-//   gnomon_eevee_ltc_tool source/engines/eevee/tables/ltc.inc
+//   gnomon_eevee_ltc_tool source/engines/eevee/tables/ltc.bin
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
@@ -19,6 +19,7 @@
 #define SHARED_DOUBLE
 #include "eevee_shape_shared.h"
 #undef float
+#include "eevee_write_table.hh"
 
 namespace {
 
@@ -226,13 +227,32 @@ std::array<double, 3> minimized(std::array<double, 3> start, double step, F &&f)
   return simplex[0].at;
 }
 
+/** Set the hemispherical mean of the albedo, for multiple scattering. It is the same in each row. */
+void set_mean_albedos(std::vector<glm::dvec4> &table)
+{
+  for (int column = 0; column < size; column++) {
+    double sum = 0.0;
+    constexpr int steps = 32;
+    const double roughness = double(column) / (size - 1);
+    for (int i = 0; i < steps; i++) {
+      const double cosine_sq = (i + 0.5) / steps;
+      const double cosine = std::sqrt(cosine_sq);
+      const Lobe lobe{.view = vec3(std::sqrt(1.0 - cosine_sq), 0.0, cosine),
+                      .alpha = std::max(roughness * roughness, double(ALPHA_MIN))};
+      sum += albedo_of(lobe, 64).whole / steps;
+    }
+    for (int row = 0; row < size; row++) {
+      table[std::size_t(row) * 2 * size + std::size_t(column) + size].z = sum;
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argument_count, char **arguments)
 {
-  std::FILE *file = argument_count == 2 ? std::fopen(arguments[1], "w") : nullptr;
-  if (!file) {
-    std::fprintf(stderr, "usage: gnomon_eevee_ltc_tool OUTPUT.inc (a file that can be written)\n");
+  if (argument_count != 2) {
+    std::fprintf(stderr, "usage: gnomon_eevee_ltc_tool OUTPUT.bin\n");
     return 2;
   }
   std::vector<glm::dvec4> table(2 * size * size);
@@ -274,24 +294,6 @@ int main(int argument_count, char **arguments)
                              sheen_albedo(lobe.view, std::max(roughness * roughness, double(SHEEN_ALPHA_MIN)))};
     }
   }
-  // The hemispherical mean of the albedo, for multiple scattering. It is the same in each row.
-  for (int column = 0; column < size; column++) {
-    double sum = 0.0;
-    constexpr int steps = 32;
-    const double roughness = double(column) / (size - 1);
-    for (int i = 0; i < steps; i++) {
-      const double cosine_sq = (i + 0.5) / steps;
-      const double cosine = std::sqrt(cosine_sq);
-      const Lobe lobe{.view = vec3(std::sqrt(1.0 - cosine_sq), 0.0, cosine),
-                      .alpha = std::max(roughness * roughness, double(ALPHA_MIN))};
-      sum += albedo_of(lobe, 64).whole / steps;
-    }
-    for (int row = 0; row < size; row++) {
-      table[std::size_t(row) * 2 * size + std::size_t(column) + size].z = sum;
-    }
-  }
-  for (const glm::dvec4 &texel : table) {
-    std::fprintf(file, "%.6eF,%.6eF,%.6eF,%.6eF,\n", texel.x + 0.0, texel.y + 0.0, texel.z + 0.0, texel.w + 0.0);
-  }
-  return std::fclose(file) == 0 ? 0 : 1;
+  set_mean_albedos(table);
+  return write_table(arguments[1], table);
 }
