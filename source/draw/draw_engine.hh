@@ -54,10 +54,10 @@ class Engine {
   /** Finish the sync, after all objects are known. Calls Viewport::restart if the picture changes. */
   virtual void cache_finish(Viewport &viewport) = 0;
   /**
-   * Draw sample number Viewport::samples_drawn (the first is 0), or the part Viewport::part of it, unless all samples
-   * of the picture are drawn or Viewport::is_writing. Then write the mean of the whole samples to Viewport::target, if
-   * there is a target and a sample. \a view: of the picture and its guard band. An engine whose pictures take little
-   * time may draw the whole sample in each part.
+   * If samples are missing and Viewport::is_writing() is false, draw the part Viewport::part() of sample number
+   * Viewport::samples_drawn(). The first sample is number 0. An engine whose pictures take little time may draw the
+   * whole sample in each part. Then write the mean of the whole samples to Viewport::target(), if there is a target and
+   * a sample. \a view: of the picture and its guard band.
    */
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
   /**

@@ -84,7 +84,7 @@ class ObjectBuffer {
   {
     return culling_arrays_[index];
   }
-  /** The volumes of all objects, by index, and of the last ones that used a free index. */
+  /** The volumes of all objects, by index. A free index holds the volume of the object that was removed from it. */
   [[nodiscard]] const CullingArrays &culling_arrays() const
   {
     return culling_arrays_;

@@ -31,7 +31,7 @@ struct TextureBinding {
   gpu::ResourceId sampler = 0;
 };
 
-/** Numbers of instances that Pass::record has drawn and culled. */
+/** Numbers of instances that Pass::record has drawn, and of calls that it has culled. */
 struct RecordCounts {
   /** Drawn instances: one for each call and each procedural call, and all instances of instance calls. */
   std::uint64_t drawn = 0;
@@ -103,8 +103,8 @@ class ShadingGroup {
   }
 
   /**
-   * Draw the batch once with its own matrix. Adds an object to the pass's ObjectBuffer, which Pass::clear does not
-   * remove. \pre the pass has an ObjectBuffer
+   * Draw the batch once with its own matrix. Adds an object to the pass's ObjectBuffer. Pass::clear does not remove
+   * this object. \pre the pass has an ObjectBuffer
    */
   void call(const gpu::Batch &batch, const glm::mat4 &world_from_object);
   /**

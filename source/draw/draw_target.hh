@@ -73,7 +73,7 @@ inline constexpr float exposure_max = 120.0F;
 
 /** The target of a draw. Plain data. With a default-constructed target, the viewport draws but writes no picture. */
 struct Target {
-  /** A framebuffer of the device, which must outlive the draw, or a framebuffer of the host. */
+  /** A framebuffer of the device or of the host. It must live until the draw is submitted. */
   std::variant<std::monostate, const gpu::Framebuffer *, gpu::HostFramebuffer> framebuffer{};
   /** Lower left corner of the picture in the framebuffer. Pixels outside of the picture do not change. */
   glm::ivec2 origin_px{0};

@@ -60,9 +60,9 @@ class Viewport {
    */
   void sync(std::span<Engine *const> engines, const ObjectBuffer &objects);
   /**
-   * Draw the next sample with \a engines, in order, and write the mean of all samples to \a target. While the device is
-   * recording, the commands become part of the recording. Otherwise they are submitted at once, and drawn a second time
-   * if the feedback of the device changes the picture.
+   * Draw the next sample, or its next part (set_rows_max), with \a engines, in order, and write the mean of all whole
+   * samples to \a target. While the device is recording, the commands become part of the recording. Otherwise they are
+   * submitted at once, and drawn a second time if the feedback of the device changes the picture.
    *
    * \throws gpu::Error if an engine was not synced since the viewport was made or resized, or its last sync failed; if
    * the scene was edited since, as engines find; if \a view or its inverse is not finite, if \a target cannot hold the
@@ -86,28 +86,32 @@ class Viewport {
   }
   static constexpr int no_rows_max = std::numeric_limits<int>::max();
   /**
-   * Draw what a sample needs before its rows in parts, too: a draw with 0 rows draws at most this number of units of
-   * it, which the engine chooses. Eevee's are parts of shadows; depth is drawn with the first part. No limit at first.
-   * \pre \a units is at least 0
+   * Draw what a sample needs before its rows in parts, too: a draw with 0 rows draws at most this number of set-up
+   * units. A *set-up unit* is a piece of the work before the rows of a sample. The engine defines its size: eevee's is
+   * one layer of a shadow, or some rows of a large layer; its depth pass is no unit, and belongs to the first part. No
+   * limit at first. \pre \a units is at least 0
    */
   void set_setup_max(int units)
   {
     setup_max_ = units;
   }
   static constexpr int no_setup_max = std::numeric_limits<int>::max();
-  /** During draw_scene: the part has drawn \a unit_count units. If \a left_count are left, it lights no rows. */
+  /**
+   * Called by the engine during draw_scene: this part has drawn \a unit_count set-up units. If \a left_count units are
+   * left, the part lights no rows.
+   */
   void set_setup(int unit_count, int left_count);
-  /** Units that the last part has drawn. */
+  /** Set-up units that the last part has drawn. */
   [[nodiscard]] int setup_count() const
   {
     return setup_count_;
   }
-  /** Units that the sample that has begun needs before its rows. */
+  /** Set-up units that the sample that has begun still needs before its rows. 0: none, or no sample has begun. */
   [[nodiscard]] int setup_left() const
   {
     return next_row_ ? setup_left_ : 0;
   }
-  /** Whether a sample has begun that needs more units before its rows. */
+  /** Whether a sample has begun that needs more set-up units before its rows. */
   [[nodiscard]] bool has_open_setup() const
   {
     return setup_left() > 0;

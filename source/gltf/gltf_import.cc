@@ -50,8 +50,8 @@ namespace {
  */
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
-/** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 22> harmless_extensions{
+/** Extensions that the importer reads, or whose content it may ignore. A warning names others that a file requires. */
+constexpr std::array<std::string_view, 22> supported_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_mesh_quantization",   "KHR_materials_variants",
     "KHR_texture_transform",      "KHR_xmp_json_ld",         "KHR_draco_mesh_compression",
@@ -67,7 +67,7 @@ std::string unknown_required_extensions(const File &file)
 {
   std::string names;
   for (const std::string &name : file.model.extensions_required) {
-    if (std::find(harmless_extensions.begin(), harmless_extensions.end(), name) == harmless_extensions.end()) {
+    if (std::find(supported_extensions.begin(), supported_extensions.end(), name) == supported_extensions.end()) {
       names += (names.empty() ? "" : ", ") + name;
     }
   }

@@ -9,12 +9,12 @@
 
 namespace gnomon::gpu {
 
-/** Auto: OpenGL 4.5 if it starts, otherwise Vulkan. Null: draws nothing. */
+/** Auto: the host's; without a host OpenGL 4.5, or Vulkan if OpenGL does not start. Null: draws nothing. */
 enum class Backend : std::uint8_t { Auto, OpenGl, Vulkan, Null };
 
 /** "auto", "gl", "vulkan", "null": for users, in the order of Backend. */
 inline constexpr std::array<std::string_view, 4> backend_names = {"auto", "gl", "vulkan", "null"};
-/** Those that draw. */
+/** The names for users who want a picture: all but "null". */
 inline constexpr std::span<const std::string_view> drawing_backend_names = std::span(backend_names).first<3>();
 /** \throws Error if \a name is none of backend_names */
 [[nodiscard]] Backend backend_of(std::string_view name);
@@ -26,7 +26,6 @@ struct GlHost {};
 using Host = std::variant<std::monostate, GlHost, VulkanHost>;
 
 struct DeviceDesc {
-  /** Backend::Auto: that of the host, if there is one. */
   Backend backend = Backend::Auto;
   Host host{};
   /** As VulkanDeviceDesc::compile_spirv. Empty: Vulkan does not start. */
@@ -39,7 +38,8 @@ struct DeviceDesc {
 /**
  * Create a device. If Backend::Auto takes Vulkan without a host, the sink gets a line that says so and why.
  *
- * \throws Error with the reasons, each named, for which the backend does not start, or if it is not the host's
+ * \throws Error with the reasons, each named, for which the backend does not start, or if \a desc asks for another
+ * backend than that of the host
  */
 [[nodiscard]] std::unique_ptr<Device> create_device(const DeviceDesc &desc);
 

@@ -48,8 +48,8 @@ void send_message(const MessageSink &sink, std::string_view text);
  * The interface to a graphics API.
  *
  * The create functions check their descriptions against limits(). If a create function fails, it throws an Error that
- * names the resource, and it creates nothing. Resources should be destroyed before their device. A device reports the
- * names of resources that still exist to its message sink and frees them.
+ * names the resource, and it creates nothing. Resources must be destroyed before their device. If some still exist, the
+ * device reports their names to its message sink and frees them; they are then empty (Resource).
  *
  * **Threads.** The device's thread is the thread that created the device.
  * - While no Recording exists, calls take effect at once. They must be made on the device's thread, and no packet may
@@ -539,7 +539,8 @@ struct VulkanDeviceDesc {
 };
 
 /**
- * Create a device that uses Vulkan 1.3. Of the host, it can draw into images, and has no batches and textures.
+ * Create a device that uses Vulkan 1.3. It can draw into images that the host owns (HostImage). It cannot use other
+ * resources of the host: calls with HostBatch, HostTexture and HostFramebuffer throw Error.
  *
  * \throws Error if this build has no Vulkan, if there is no Vulkan driver, or if no physical device, or the host's
  * VkDevice, has the features that are needed, naming each device and what it lacks

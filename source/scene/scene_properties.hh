@@ -48,7 +48,10 @@ enum class EsmFormat { Half, Float };
 template <>
 inline constexpr std::array<std::string_view, 2> words<EsmFormat>{"16f", "32f"};
 
-/** Shadow settings of one lamp. Each present value overrides the engine's setting. */
+/**
+ * Shadow settings of one lamp. A present value replaces the setting of the engine, if there is one. If the engine's
+ * kind is None, no lamp has a shadow. Units and limits are in the rows below.
+ */
 struct LampShadow {
   std::optional<ShadowKind> kind{};
   std::optional<int> size{};
@@ -70,7 +73,7 @@ struct LampShadow {
 /**
  * A lamp in radiometric units: glTF's photometric units divided by 683 lm/W. It shines along the local -Z axis of its
  * node. The node's scale changes the size of an area lamp and the width of a spot's cone (PlacedLamp::scale), but no
- * other lamp. Shear and mirroring have no effect on lamps.
+ * other lamp. Shear and mirroring have no effect on lamps. Units and limits are in the rows below.
  */
 struct Lamp {
   static constexpr std::string_view kind_name = "lamp";
@@ -130,8 +133,9 @@ constexpr void Lamp::for_each_property(Visit &&visit)
                   .path = "intensity",
                   .is_animated = true,
                   .aspect = unsigned(Aspect::Light),
-                  .sentence = "Point and spot: radiant intensity, W/sr. Sun: irradiance on a surface that faces it, "
-                              "W/m²; hemi the same, of a uniform sky over the half space behind it. Area: power, W."}));
+                  .sentence = "Point and spot: radiant intensity, W/sr. Sun: irradiance on a surface that faces the "
+                              "lamp, W/m². Hemi: irradiance on such a surface from a uniform sky in the half space "
+                              "behind the lamp, W/m². Area: power, W."}));
   visit(property(&Lamp::radius, {.name = "radius",
                                  .label = "Radius",
                                  .unit = "m",
@@ -229,18 +233,20 @@ constexpr void LampShadow::for_each_property(Visit &&visit)
                   .kinds = casting,
                   .extra_kinds = casting,
                   .aspect = shadow,
-                  .sentence = "Edge of the depth map or of a cube's face. Absent: that of the engine."}));
-  visit(
-      property(&LampShadow::bias, {.name = "shadow_bias",
-                                   .key = "bias",
-                                   .label = "Bias",
-                                   .group = settings,
-                                   .max = 100,
-                                   .first = 1,
-                                   .kinds = casting,
-                                   .extra_kinds = casting,
-                                   .aspect = shadow,
-                                   .sentence = "Factor of the bias that is derived from the texel size. Absent: 1."}));
+                  .sentence = "Edge of the depth map or of a cube's face. Absent: half of the layer size for "
+                              "exponential shadows, otherwise that of the engine."}));
+  visit(property(&LampShadow::bias,
+                 {.name = "shadow_bias",
+                  .key = "bias",
+                  .label = "Bias",
+                  .group = settings,
+                  .max = 100,
+                  .first = 1,
+                  .kinds = casting,
+                  .extra_kinds = casting,
+                  .aspect = shadow,
+                  .sentence = "Factor of the bias that is derived from the texel size. Absent: that of the "
+                              "engine for exponential shadows, otherwise 1."}));
   visit(property(&LampShadow::clip_start, {.name = "shadow_clip_start",
                                            .key = "clip_start",
                                            .label = "Clip start",
@@ -264,32 +270,36 @@ constexpr void LampShadow::for_each_property(Visit &&visit)
                                          .aspect = shadow,
                                          .sentence = "Farther casters, beyond the clip start, cast no shadow. Absent: "
                                                      "all cast one."}));
-  visit(property(&LampShadow::exponent,
-                 {.name = "shadow_exponent",
-                  .key = "exponent",
-                  .label = "Exponent",
-                  .group = settings,
-                  .unit = "1/m",
-                  .min = 0.01,
-                  .max = 1e4,
-                  .first = 10,
-                  .kinds = casting,
-                  .extra_kinds = casting,
-                  .aspect = shadow,
-                  .sentence = "Exponential shadows: exponent. Absent: it follows the size and the lamp's range."}));
-  visit(property(&LampShadow::filter_angle,
-                 {.name = "shadow_filter_angle",
-                  .key = "filter_radius",
-                  .label = "Filter radius",
-                  .group = settings,
-                  .unit = "rad",
-                  .max = std::numbers::pi / 4,
-                  .first = std::numbers::pi / 180,
-                  .kinds = casting,
-                  .extra_kinds = casting,
-                  .is_extra_in_degrees = true,
-                  .aspect = shadow,
-                  .sentence = "Exponential shadows: half the opening angle of the filter. Absent: that of a texel."}));
+  visit(property(
+      &LampShadow::exponent,
+      {.name = "shadow_exponent",
+       .key = "exponent",
+       .label = "Exponent",
+       .group = settings,
+       .unit = "1/m",
+       .min = 0.01,
+       .max = 1e4,
+       .first = 10,
+       .kinds = casting,
+       .extra_kinds = casting,
+       .aspect = shadow,
+       .sentence = "Exponential shadows: exponent. Absent: that of the engine. If that is absent too, it is derived "
+                   "from the size, the filter and the range of the shadow."}));
+  visit(property(
+      &LampShadow::filter_angle,
+      {.name = "shadow_filter_angle",
+       .key = "filter_radius",
+       .label = "Filter radius",
+       .group = settings,
+       .unit = "rad",
+       .max = std::numbers::pi / 4,
+       .first = std::numbers::pi / 180,
+       .kinds = casting,
+       .extra_kinds = casting,
+       .is_extra_in_degrees = true,
+       .aspect = shadow,
+       .sentence = "Exponential shadows: half the opening angle of the filter. Absent: that of the engine. If that is "
+                   "absent too, half the mean angle of a texel."}));
   visit(property(&LampShadow::esm_size, {.name = "shadow_esm_size_px",
                                          .key = "esm_size",
                                          .label = "Layer size",
@@ -303,15 +313,18 @@ constexpr void LampShadow::for_each_property(Visit &&visit)
                                          .aspect = shadow,
                                          .sentence = "Exponential shadows: edge of the octahedral layer. Absent: that "
                                                      "of the engine."}));
-  visit(property(&LampShadow::esm_format,
-                 {.name = "shadow_esm_format",
-                  .key = "esm_format",
-                  .label = "Layer format",
-                  .group = settings,
-                  .kinds = casting,
-                  .extra_kinds = casting,
-                  .aspect = shadow,
-                  .sentence = "ESM: numbers of the octahedral layer. Absent: the smaller one that is accurate."}));
+  visit(property(
+      &LampShadow::esm_format,
+      {.name = "shadow_esm_format",
+       .key = "esm_format",
+       .label = "Layer format",
+       .group = settings,
+       .kinds = casting,
+       .extra_kinds = casting,
+       .aspect = shadow,
+       .sentence =
+           "ESM: format of the octahedral layer. Absent: that of the engine. If that is absent too, the smaller "
+           "one that is accurate."}));
 }
 
 enum class CameraKind { Perspective, Orthographic };

@@ -39,7 +39,7 @@ struct World {
   glm::vec3 color{1.0F};
   float strength = 1.0F;
   float rotation = 0.0F;
-  /** nullptr: the radiance is the same in all directions, `color` · `strength`. */
+  /** nullptr: the radiance is the same in all directions, `color` · `strength` W/(sr m²). */
   std::shared_ptr<const WorldPicture> picture{};
 
   bool operator==(const World &) const = default;
@@ -53,18 +53,21 @@ template <typename Visit>
 constexpr void World::for_each_property(Visit &&visit)
 {
   constexpr double factor_max = 1e30;
-  visit(property(&World::color, {.name = "color",
-                                 .label = "Color",
-                                 .max = factor_max,
-                                 .sentence = "Linear red, green and blue; factors of the picture."}));
+  visit(property(&World::color,
+                 {.name = "color",
+                  .label = "Color",
+                  .max = factor_max,
+                  .sentence = "Linear red, green and blue: factors of the picture, or without a picture a radiance, "
+                              "W/(sr m²)."}));
   visit(property(&World::strength,
                  {.name = "strength", .label = "Strength", .max = factor_max, .sentence = "Factor of the colour."}));
-  visit(property(&World::rotation,
-                 {.name = "rotation",
-                  .label = "Rotation",
-                  .unit = "rad",
-                  .min = -float_max,
-                  .sentence = "Of the picture around the y axis. By π/2, the texel at +x moves to -z."}));
+  visit(
+      property(&World::rotation,
+               {.name = "rotation",
+                .label = "Rotation",
+                .unit = "rad",
+                .min = -float_max,
+                .sentence = "Angle by which the picture turns around the y axis. At π/2, the texel at +x is at -z."}));
 }
 
 /**

@@ -14,10 +14,10 @@
 namespace gnomon::eevee {
 
 /**
- * Settings of a picture for which there is time, as `gnomon render` draws it: \a sample_count samples, 0 for no limit,
- * with shadow maps that are as fine as these samples show. For one sample they are smaller than those of Settings, and
- * from 16 samples on larger, and fitted to the visible surfaces (ShadowSettings::is_fitted_to_depth). For views that
- * move, Settings has shadows whose edges keep their place.
+ * Settings of an offline picture, as `gnomon render` draws it. \a sample_count: samples for each pixel; 0: no limit.
+ * For one sample, shadow maps are smaller than those of Settings. For 16 or more samples, and for no limit, they are
+ * larger, and fitted to the visible surfaces (ShadowSettings::is_fitted_to_depth). For views that move, use Settings:
+ * the edges of its shadows keep their place.
  */
 [[nodiscard]] Settings offline_settings(int sample_count);
 
@@ -89,11 +89,11 @@ class Engine final : public draw::Engine {
   [[nodiscard]] float radiance_scale(draw::Viewport &viewport) const;
   /**
    * Sum of the filter weights of the samples so far, as a share of those of all Settings::sample_count samples: 1 for a
-   * whole picture. A picture is the mean of its parts, weighted by their shares. Not a share if Settings::sample_count
-   * is 0.
+   * whole picture. A picture is the mean of its parts, weighted by their shares. If Settings::sample_count is 0, the
+   * unit is the weight of a sample at the centre of its pixel: the result is about the number of samples so far.
    */
   [[nodiscard]] double sample_share(draw::Viewport &viewport) const;
-  /** Whether the picture has all of its samples, so that further draws would not change it. */
+  /** Whether the picture has all of its samples, or finish ended it, so that further draws would not change it. */
   [[nodiscard]] bool is_complete(draw::Viewport &viewport) const;
   /**
    * End the current picture with the samples drawn so far. Further draws add no sample until the picture begins anew;

@@ -22,7 +22,7 @@ struct StepTime {
 
 /** The surface at the centre of each pixel, and the visibility of one lamp there. Rows from the bottom. */
 struct Probe {
-  /** xyz: position in the coordinates of the render scene, metres. w: visibility of the lamp, in [0, 1]. */
+  /** xyz: position relative to RenderScene::origin_ws, metres. w: visibility of the lamp, in [0, 1]. */
   std::vector<glm::vec4> position_visibility;
   /** xyz: normal of the triangle on its visible side. w: 1. All components are 0 for pixels without a surface. */
   std::vector<glm::vec4> normal;
@@ -30,7 +30,7 @@ struct Probe {
 
 /** The opaque surface at the centre of each pixel. Rows from the bottom; all values are 0 without a surface. */
 struct Surfaces {
-  /** xyz: position in the coordinates of the render scene. w: distance from the eye along the view axis. Metres. */
+  /** Metres. xyz: position relative to RenderScene::origin_ws. w: distance from the eye along the view axis. */
   std::vector<glm::vec4> position_depth;
   /** xyz: shading normal on the visible side, world space, unit length. w: the object's draw::ObjectIndex. */
   std::vector<glm::vec4> normal_object;
@@ -73,7 +73,7 @@ class Inspection {
    * Times of the samples that were submitted since the last call, for which it waits. Empty unless Settings::is_timed.
    */
   [[nodiscard]] std::vector<StepTime> take_step_times() const;
-  /** The recorded passes as text. Empty before the first draw in which an object is visible. */
+  /** The recorded passes as text. Empty before the first draw in which an object or a background is visible. */
   [[nodiscard]] std::string serialize_passes() const;
   /**
    * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Empty where the
@@ -94,7 +94,7 @@ class Inspection {
   [[nodiscard]] const ShadowCounters &shadow_counters() const;
   /**
    * Edge of a texel of the lamp's shadow at a position, perpendicular to the light, metres. 0 where the lamp has no
-   * shadow there.
+   * shadow there. \a position_ws: metres, relative to RenderScene::origin_ws
    */
   [[nodiscard]] double shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const;
   /**

@@ -8,7 +8,7 @@
 #include <utility>
 
 /**
- * Layers of a picture for compositing: parts of its light, and what its surfaces are. They are rendered after the
+ * AOV layers of a picture, for compositing: parts of its light, and what its surfaces are. They are rendered after the
  * picture, from the same samples with the same pixel filter, so that they fit it at edges. Blended surfaces have light,
  * but are no surfaces here: the opaque surface behind them is.
  */
@@ -18,19 +18,25 @@ namespace gnomon::eevee {
 enum class LayerSource {
   /** The picture itself. */
   Picture,
-  /** SurfaceLayers::position_depth, normal, albedo_roughness. */
+  /** SurfaceLayers::position_depth. */
   Centers,
+  /** The normals of SurfaceLayers::normal. */
   Normals,
+  /** SurfaceLayers::albedo_roughness. */
   Means,
-  /** SurfaceLayers::visibilities, and objects by their nodes and by their materials. */
+  /** SurfaceLayers::visibilities. */
   Visibility,
+  /** SurfaceLayers::objects, by the names of their nodes. */
   Objects,
+  /** SurfaceLayers::objects, by the names of their materials. */
   Materials,
-  /** Light of a lamp, of surfaces, of the world. */
+  /** The light of the lamps of one name: render_lamp_layer. */
   Lamp,
+  /** LightPart::Kind::Emission. */
   Emission,
+  /** LightPart::Kind::World. */
   World,
-  /** The objects of SurfaceLayers::normal. */
+  /** The object indices of SurfaceLayers::normal. */
   Ids,
 };
 
@@ -96,11 +102,11 @@ inline constexpr float no_depth = 1e10F;
 /** One entry for each pixel, rows from the bottom. Layers that were not asked for are empty. */
 struct SurfaceLayers {
   /**
-   * Position in the scene's world space and depth, metres, at the centre of the pixel: no mean of two surfaces is on
-   * either. (0, 0, 0, no_depth) without a surface.
+   * Position in the scene's world space and depth, metres, at the centre of the pixel, because the mean of two
+   * positions lies on neither surface. (0, 0, 0, no_depth) without a surface.
    */
   std::vector<glm::vec4> position_depth;
-  /** Surfaces::normal_object at the centre of the pixel. */
+  /** Surfaces::normal_object at the centre of the pixel: the normal, and the index of the object. */
   std::vector<glm::vec4> normal;
   /** Surfaces::albedo_roughness, filtered as the picture is: multiplied by the coverage of the pixel. */
   std::vector<glm::vec4> albedo_roughness;
@@ -119,7 +125,9 @@ struct SurfaceLayers {
 
 /**
  * The picture of \a camera with a part of its light. \a sample_count: samples of the picture.
- * Afterwards, the renderer is synced with its settings, and its picture begins anew. So are the next functions'.
+ *
+ * This function and the two below change the settings of \a renderer, draw, restore the settings and sync. The next
+ * draw of \a renderer starts its picture again.
  * \pre Settings::noise_threshold is 0, here and in the next functions: layers have all samples
  */
 [[nodiscard]] std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,

@@ -10,7 +10,7 @@
 
 namespace gnomon::eevee {
 
-/** Conditions that end a picture before it has all its samples. Each picture has at least one. */
+/** Limits that end a picture before it has all its samples. It gets at least one sample, whatever the limits are. */
 struct DrawLimits {
   /** Called after each sample with the number of samples drawn. Returns false to end the picture. May be empty. */
   std::function<bool(int samples_drawn)> progress{};
@@ -25,9 +25,9 @@ struct DrawLimits {
  * Renders a scene on a device. It owns the resources of the scene on the device, one engine and one viewport, and makes
  * their calls in the required order. Programs with several engines or viewports use these classes directly.
  *
- * The scene may be edited between any two calls; sync applies the edits. A program either calls sync and draw on the
- * device's thread, or uses two threads: one edits the scene and calls prepare, and the device's thread submits the
- * packets.
+ * The scene may be edited between any two calls; sync applies the edits. prepare and draw_within call sync themselves
+ * if it is necessary. Before draw_sample and draw, the caller must call it. A program either draws on the device's
+ * thread, or uses two threads: one edits the scene and calls prepare, and the device's thread submits the packets.
  */
 class SceneRenderer {
  public:
@@ -61,10 +61,11 @@ class SceneRenderer {
   }
 
   /**
-   * Sync if necessary, and record the next sample of the picture of \a camera into \a packet, for gpu::Device::submit
-   * on the device's thread. Otherwise as draw_sample. This function does not use the device and may be called on
-   * another thread. It takes the feedback of the last submission of \a packet, so that cascades that are fitted to
-   * depths follow the camera some frames later. The framebuffer of \a target must live until the submission.
+   * Sync if necessary, and record the calls of draw_sample into \a packet, for gpu::Device::submit on the device's
+   * thread. This function does not call the graphics API, and may be called on another thread. It takes the feedback of
+   * the last submission of \a packet, so that cascades that are fitted to depths follow the camera some frames later.
+   * The framebuffer of \a target must live until the submission.
+   * \return as draw_sample \throws gpu::Error as sync and draw_sample, but not for a missing sync
    */
   bool prepare(gpu::Packet &packet, const scene::PlacedCamera &camera, const draw::Target &target = {});
   /**

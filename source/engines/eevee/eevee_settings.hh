@@ -58,7 +58,10 @@ inline constexpr int open_ended_sample_count = 256;
 /** Most points of emissive surfaces in a sample. \see Settings::emissive_point_count */
 inline constexpr int emissive_point_max = 16;
 
-/** Names, units and limits are in the rows below. */
+/**
+ * Members with a row have their name, unit and limits there. `shadow` has rows of its own. `light`, `sample_first`,
+ * `sample_end`, `has_probe` and `has_surfaces` have none, because a host sets them.
+ */
 struct Settings {
   ShadowSettings shadow{};
   Background background{};
@@ -73,8 +76,9 @@ struct Settings {
    */
   int sample_count = 1;
   /**
-   * Draw only the samples from `sample_first` to `sample_end` - 1 of the picture, for pictures that are drawn in parts;
-   * `sample_end` 0: to the last. \pre 0 <= sample_first < sample_end <= sample_count, or both are 0. \see sample_share
+   * Draw only the samples from `sample_first` to `sample_end` - 1 of the picture, for pictures that are drawn in parts.
+   * `sample_end` is 0 for the last sample of the picture. \see Engine::sample_share
+   * \pre both are 0, or 0 <= sample_first < end <= sample_count with end = `sample_end`, or `sample_count` if that is 0
    */
   int sample_first = 0;
   int sample_end = 0;
@@ -125,7 +129,7 @@ struct Settings {
   {
     return sample_count == 0 ? open_ended_sample_count : sample_count;
   }
-  /** All but the shadow's. */
+  /** The rows of this struct alone: ShadowSettings has its own. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 
@@ -140,15 +144,17 @@ template <typename Visit>
 constexpr void Settings::for_each_property(Visit &&visit)
 {
   using scene::property;
-  visit(property(&Settings::sample_count, {.name = "sample_count",
-                                           .key = "samples",
-                                           .option = "samples",
-                                           .label = "Samples",
-                                           .unit = "per pixel",
-                                           .min = 1,
-                                           .max = 65536,
-                                           .zero = "no limit",
-                                           .sentence = "Samples of a picture. 0: as many as fit into a time."}));
+  visit(property(&Settings::sample_count,
+                 {.name = "sample_count",
+                  .key = "samples",
+                  .option = "samples",
+                  .label = "Samples",
+                  .unit = "per pixel",
+                  .min = 1,
+                  .max = 65536,
+                  .zero = "no limit",
+                  .sentence = "Samples for each pixel of a complete picture. 0: no limit; the host or a time "
+                              "limit ends the picture."}));
   visit(property(&Settings::seed, {.name = "seed",
                                    .option = "seed",
                                    .max = std::numeric_limits<std::uint32_t>::max(),

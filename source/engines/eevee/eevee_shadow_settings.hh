@@ -102,17 +102,22 @@ enum class LayerPass {
 /** The faces of one-sided casters that are drawn. Both faces of two-sided materials are always drawn. */
 enum class CasterFaces { All, Front, Back };
 
-/** Settings of shadows; names, units and limits are in the rows below. Those of a lamp (scene::LampShadow) override
- * them, except that `None` disables all shadows. */
+/**
+ * Settings of shadows. Names, units and limits are in the rows below. Present values of a lamp (scene::LampShadow)
+ * replace them. If `kind` is None, no lamp has a shadow, whatever its own kind is.
+ */
 struct ShadowSettings {
-  /** Hard: bilinear blend of the four texels around a lookup. Pcf: percentage-closer filtering with `pcf`. */
+  /**
+   * Hard: bilinear blend of the four texels around a lookup. Pcf: percentage-closer filtering with `pcf`. Esm, Evsm:
+   * exponential shadow maps with `esm`; suns have Pcf instead, and a warning names them.
+   */
   scene::ShadowKind kind = scene::ShadowKind::Hard;
   /** Edge of a cube face, texels. */
   int cube_size_px = 1024;
   /** Edge of a planar map, texels. */
   int map_size_px = 2048;
   PcfKernel pcf{};
-  /** Settings of Esm and Evsm for all lamps except suns. EsmSettings::method is not used: `kind` selects the method. */
+  /** Settings of Esm and Evsm. EsmSettings::method is not used: `kind`, or that of the lamp, selects the method. */
   EsmSettings esm{};
   CascadeSettings cascades{};
   /**
@@ -178,32 +183,36 @@ constexpr void EsmSettings::for_each_property(Visit &&visit)
                   .min = 4,
                   .max = 8192,
                   .sentence = "Texels along an edge of an octahedral layer, for ESM and EVSM of lamps except suns."}));
-  visit(property(&EsmSettings::exponent,
-                 {.name = "shadow_exponent",
-                  .key = "exponent",
-                  .label = "ESM exponent",
-                  .group = shadow_settings_group,
-                  .unit = "1/m",
-                  .min = 0.01,
-                  .max = 1e4,
-                  .first = 10,
-                  .sentence = "Exponential shadows: exponent. Absent: it follows the size and the lamp's range."}));
-  visit(property(&EsmSettings::filter_angle,
-                 {.name = "shadow_filter_angle",
-                  .key = "filter_radius",
-                  .label = "ESM filter radius",
-                  .group = shadow_settings_group,
-                  .unit = "rad",
-                  .max = std::numbers::pi / 4,
-                  .first = std::numbers::pi / 180,
-                  .sentence = "Exponential shadows: half the opening angle of the filter. Absent: that of a texel."}));
+  visit(property(
+      &EsmSettings::exponent,
+      {.name = "shadow_exponent",
+       .key = "exponent",
+       .label = "ESM exponent",
+       .group = shadow_settings_group,
+       .unit = "1/m",
+       .min = 0.01,
+       .max = 1e4,
+       .first = 10,
+       .sentence = "Exponential shadows: exponent. Absent: it is derived from the size, the filter and the range of "
+                   "each shadow."}));
+  visit(property(
+      &EsmSettings::filter_angle,
+      {.name = "shadow_filter_angle",
+       .key = "filter_radius",
+       .label = "ESM filter radius",
+       .group = shadow_settings_group,
+       .unit = "rad",
+       .max = std::numbers::pi / 4,
+       .first = std::numbers::pi / 180,
+       .sentence = "Exponential shadows: half the opening angle of the filter. Absent: half the mean angle of a "
+                   "texel."}));
   visit(property(&EsmSettings::bias, {.name = "shadow_bias",
                                       .max = 100,
                                       .sentence = "Exponential shadows: factor of the bias that is derived from the "
                                                   "texel size."}));
   visit(property(&EsmSettings::format,
                  {.name = "shadow_esm_format",
-                  .sentence = "ESM: numbers of the octahedral layer. Absent: the smaller one that is accurate."}));
+                  .sentence = "ESM: format of the octahedral layer. Absent: the smaller one that is accurate."}));
 }
 
 template <typename Visit>

@@ -181,8 +181,10 @@ struct ShadowInspection {
 };
 
 /**
- * A method of storing and drawing the shadow of a lamp. Techniques have no state. shadow_techniques() lists all of
- * them, and the rest of the engine uses them only through this interface.
+ * A method of storing and drawing the shadow of a lamp. A user selects a kind (scene::ShadowKind); the kind and the
+ * lamp select the technique (serves). Several kinds may share a technique: Hard and Pcf read the same maps. Techniques
+ * have no state. shadow_techniques() lists all of them, and the rest of the engine uses them only through this
+ * interface.
  */
 class ShadowTechnique {
  public:

@@ -18,7 +18,10 @@ namespace gnomon::eevee {
 struct ShadowState {
   /** Index in Lamps::lights. */
   int light = 0;
-  /** Name of the array of the layers: "shadow_cubes", "shadow_maps" or "shadow_distance_cube". */
+  /**
+   * Name of the array in which the layers are drawn: "shadow_cubes" or "shadow_maps"; "shadow_distance_cube", which all
+   * lamps with exponential shadows use in turn, and from which OctahedralStore makes their octahedral layers.
+   */
   std::string_view array;
   /** Edge of each layer, texels. */
   int size_px = 0;
