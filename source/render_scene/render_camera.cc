@@ -39,10 +39,18 @@ void check(const scene::PlacedCamera &camera)
   if (!std::isfinite(camera.shift_x + camera.shift_y)) {
     refuse(fmt::format("shift of {} and {} is not finite", camera.shift_x, camera.shift_y));
   }
-  if (!(camera.aperture_radius >= 0.0F && std::isfinite(camera.aperture_radius) && camera.focus_distance >= 0.0F &&
-        camera.aperture_ratio > 0.0F && std::isfinite(camera.aperture_rotation))) {
-    refuse(fmt::format("aperture of radius {}, ratio {} and rotation {}, with a focus at {}, cannot be drawn",
-                       camera.aperture_radius, camera.aperture_ratio, camera.aperture_rotation, camera.focus_distance));
+  // Of the rays through the edge of the aperture to the middle of the plane in focus, whose products with the
+  // projection must be finite.
+  constexpr float slope_max = 1e25F;
+  const float reach = camera.aperture_radius / std::min(camera.aperture_ratio, 1.0F);
+  const float slope = camera.focus_distance == 0.0F ? 0.0F : reach / camera.focus_distance;
+  if (!(camera.aperture_radius >= 0.0F && reach <= slope_max && camera.focus_distance >= 0.0F && slope <= slope_max &&
+        camera.aperture_ratio > 0.0F && std::isfinite(camera.aperture_rotation) &&
+        (camera.aperture_blades == 0 || camera.aperture_blades >= 3))) {
+    refuse(
+        fmt::format("aperture of radius {}, ratio {}, rotation {} and {} blades, with a focus at {}, cannot be drawn",
+                    camera.aperture_radius, camera.aperture_ratio, camera.aperture_rotation, camera.aperture_blades,
+                    camera.focus_distance));
   }
 }
 

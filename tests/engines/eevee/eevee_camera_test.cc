@@ -115,6 +115,17 @@ TEST(CameraView, NamesALensThatCannotBeDrawn)
            {"far plane nan", [](auto &camera) { camera.far = nan; }},
            {"aspect ratio -1", [](auto &camera) { camera.aspect = -1.0F; }},
            {"position is not finite", [](auto &camera) { camera.world_from_camera[3].y = nan; }},
+           {"shift of 0 and nan", [](auto &camera) { camera.shift_y = nan; }},
+           {"aperture of radius -1", [](auto &camera) { camera.aperture_radius = -1.0F; }},
+           {"aperture of radius inf", [](auto &camera) { camera.aperture_radius = infinite; }},
+           {"with a focus at -1", [](auto &camera) { camera.focus_distance = -1.0F; }},
+           {"with a focus at 1e-12",
+            [](auto &camera) {
+              camera.aperture_radius = 1e20F;
+              camera.focus_distance = 1e-12F;
+            }},
+           {"ratio 0", [](auto &camera) { camera.aperture_ratio = 0.0F; }},
+           {"2 blades", [](auto &camera) { camera.aperture_blades = 2; }},
            {"half size 0x1", [](auto &camera) {
               camera.kind = scene::CameraKind::Orthographic;
               camera.half_width = 0.0F;
