@@ -53,16 +53,23 @@ void add_files(const RenderOptions &options, const FrameSequence &frames, Roles 
   }
 }
 
-scene::PlacedCamera find_camera(const scene::Scene &scene, const std::string &name)
+/** The camera of the picture, with the lens that options ask for. */
+scene::PlacedCamera find_camera(const scene::Scene &scene, const RenderOptions &options)
 {
   std::vector<std::string> names;
-  for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
-    if (name.empty() || camera.name == name) {
+  for (scene::PlacedCamera &camera : scene.placed_cameras()) {
+    if (options.camera.empty() || camera.name == options.camera) {
+      if (!options.camera_changes.empty() && camera.kind != scene::CameraKind::Perspective) {
+        throw std::runtime_error(fmt::format(
+            "{}: camera '{}' is orthographic; --aperture and --focus need a perspective one", scene.path, camera.name));
+      }
+      static_cast<scene::Camera &>(camera) = changed<scene::Camera>(camera, options.camera_changes);
       return camera;
     }
     names.push_back(camera.name);
   }
-  throw std::runtime_error(fmt::format("{}: no camera '{}'; it has: {}", scene.path, name, fmt::join(names, ", ")));
+  throw std::runtime_error(
+      fmt::format("{}: no camera '{}'; it has: {}", scene.path, options.camera, fmt::join(names, ", ")));
 }
 
 /** The texture for the display-referred picture of a PNG. Empty for other outputs and for --debug shadow. */
@@ -297,7 +304,7 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
     }
     if (i > 0) {
       frames.pose(scene, i);
-      camera = find_camera(scene, options.camera);
+      camera = find_camera(scene, options);
       renderer.sync();
     }
     const SceneWork frame_work{options, frames, work.stops, work.progress, result, work.content};
@@ -371,7 +378,7 @@ PreparedScene prepare(const RenderOptions &options, FrameSequence &frames, scene
   const std::string imported = is_part ? scene_fingerprint(scene) : std::string();
   frames.choose_animations(scene);
   frames.pose(scene, 0);
-  const scene::PlacedCamera camera = find_camera(scene, options.camera);
+  const scene::PlacedCamera camera = find_camera(scene, options);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
   constexpr glm::vec3 light_grey(0.6F);
   const std::optional<glm::vec3> own = is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt;
@@ -686,7 +693,7 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   FrameSequence frames(options.frames, options.output);
   frames.choose_animations(scene);
   frames.pose(scene, 0);
-  const scene::PlacedCamera camera = find_camera(scene, options.camera);
+  const scene::PlacedCamera camera = find_camera(scene, options);
   if (!device) {
     return measured;
   }
@@ -694,8 +701,8 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   eevee::SceneRenderer renderer(*device, scene, options.size_px(), options.engine_settings());
   const auto draw_samples = [&](int count_max) {
     renderer.sync();
-    const int count = renderer.draw(find_camera(scene, options.camera),
-                                    {.progress = [count_max](int drawn) { return drawn < count_max; }});
+    const int count =
+        renderer.draw(find_camera(scene, options), {.progress = [count_max](int drawn) { return drawn < count_max; }});
     device->finish();
     return count;
   };

@@ -293,6 +293,9 @@ static CLI::Option *add_picture_options(CLI::App &command, RenderOptions &option
                      "name is replaced by that of the scene");
   command.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command.add_option("--camera", options.camera, "Name of the camera (default: the first)");
+  SettingOptions<scene::Camera> camera(std::vector<Defaults<scene::Camera>>{});
+  camera.take<scene::Camera>(whole_part);
+  camera.add_to(command, "Picture", options.camera_changes);
   CLI::Option *samples = add_samples_option(command, options.samples);
   command
       .add_option("--time-limit", options.seconds_max,

@@ -27,6 +27,7 @@ struct RenderOptions {
   std::string size = "960x540";
   std::string camera;
   Changes<gltf::ImportOptions> import_changes;
+  Changes<scene::Camera> camera_changes;
   /** Empty: the scene's files may be anywhere. */
   std::filesystem::path only_below;
   int samples = 16;

@@ -67,7 +67,7 @@ template <typename Value>
     const std::string_view unit = scene::shown_unit(row).text;
     return (limits.max < scene::float_max ? fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max)
                                           : fmt::format("at least {:g}", limits.min)) +
-           (unit.empty() ? "" : " ") + std::string(unit);
+           (unit.empty() ? "" : " ") + std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0");
   }
   if (!row.automatic.empty()) {
     words.push_back(row.automatic);
@@ -98,7 +98,9 @@ template <typename Value>
   else {
     std::conditional_t<is_integer<Value>, std::int64_t, Value> number{};
     const scene::ShownLimits limits = scene::shown_limits(row, is_integer<Value>);
-    const auto is_within = [&](auto limit_min, auto limit_max) { return number >= limit_min && number <= limit_max; };
+    const auto is_within = [&](auto limit_min, auto limit_max) {
+      return (number >= limit_min && number <= limit_max) || (number == 0 && !row.zero.empty());
+    };
     using Number = decltype(number);
     // A limit of a float is one of floats, and NaN is in none.
     if (!CLI::detail::lexical_cast(text, number) || !is_within(Number(limits.min), Number(limits.max))) {
@@ -136,7 +138,7 @@ struct Defaults {
 template <typename T>
 class SettingOptions {
  public:
-  /** \a defaults: the first are those in general. */
+  /** \a defaults: the first are those in general. None: the scene has them. */
   explicit SettingOptions(std::vector<Defaults<T>> defaults = {Defaults<T>()}) : defaults_(std::move(defaults)) {}
 
   /**
@@ -241,6 +243,10 @@ class SettingOptions {
   /** A text that an option may have: its default. Otherwise a sentence for people. */
   void describe_default(SetTogether &set) const
   {
+    if (set.defaults.empty()) {
+      set.default_sentence = "that of the scene";
+      return;
+    }
     const bool is_same = std::ranges::all_of(set.defaults, [&](const auto &text) { return text == set.defaults[0]; });
     const bool is_value = set.is_right.size() == 1 && set.is_right[0](set.defaults[0]);
     set.default_text = !set.automatic.empty() ? set.automatic : is_same && is_value ? set.defaults[0] : "";

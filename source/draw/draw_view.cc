@@ -12,10 +12,11 @@
 
 namespace gnomon::draw {
 
-View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view)
+View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens)
     : view_from_world_(view_from_world),
       clip_from_view_(clip_from_view),
-      clip_from_world_(clip_from_view * view_from_world)
+      clip_from_world_(clip_from_view * view_from_world),
+      lens_(lens)
 {
   const glm::mat4 rows = glm::transpose(clip_from_world_);
   // Gribb and Hartmann 2001, for reversed z in [0, w]: a point is inside the near plane if z <= w, and inside the far

@@ -6,6 +6,7 @@
 #include <glm/vec4.hpp>
 
 #include <array>
+#include <limits>
 
 namespace gnomon::draw {
 
@@ -25,7 +26,26 @@ using CullingPlanes = std::array<glm::vec4, 6>;
 /** The radius and the rounding error of the height of the centre; infinite: the volume is never culled. Metres. */
 [[nodiscard]] float culling_reach(const CullingVolume &volume);
 
-/** Position, direction and projection from which a pass is drawn. */
+/**
+ * The aperture of a perspective camera, in the plane through the eye. Engines that draw several samples of a picture
+ * see each from another point of it (depth of field); others see from its centre.
+ */
+struct Lens {
+  /** Half the height of the aperture, metres. 0: a pinhole. */
+  float radius = 0.0F;
+  /** Distance of the plane in focus along the view direction, metres, above 0. May be infinite. */
+  float focus_distance = std::numeric_limits<float>::infinity();
+  /** Corners of a polygon, at least 3. 0: round. */
+  int blades = 0;
+  /** Angle from +X of view space to the middle of an edge of the polygon, counter-clockwise, radians. */
+  float rotation = 0.0F;
+  /** Height of the aperture over its width. */
+  float ratio = 1.0F;
+
+  bool operator==(const Lens &) const = default;
+};
+
+/** Position, direction, projection and lens from which a pass is drawn. */
 class View {
  public:
   View() : View(glm::mat4(1.0F), glm::mat4(1.0F)) {}
@@ -33,7 +53,7 @@ class View {
    * View space looks along -Z. \a clip_from_view maps the near plane to z = w and the far plane to z = 0 (reversed
    * depth). \pre both matrices are finite
    */
-  View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view);
+  View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens = {});
 
   [[nodiscard]] const glm::mat4 &view_from_world() const
   {
@@ -50,6 +70,10 @@ class View {
   [[nodiscard]] bool is_perspective() const
   {
     return clip_from_view_[3][3] == 0.0F;
+  }
+  [[nodiscard]] const Lens &lens() const
+  {
+    return lens_;
   }
   /** Whether the picture is a mirror image, in which the vertices of front sides are clockwise. */
   [[nodiscard]] bool is_mirrored() const
@@ -73,6 +97,7 @@ class View {
   glm::mat4 view_from_world_;
   glm::mat4 clip_from_view_;
   glm::mat4 clip_from_world_;
+  Lens lens_;
   std::array<glm::vec4, 6> frustum_planes_ws_;
 };
 

@@ -330,6 +330,7 @@ class SceneWriter {
     if (camera->name != node.name) {
       extras.add("gnomon_camera_name", json_string(camera->name, "camera"));
     }
+    add_camera_extras(*camera, extras);
   }
 
   void add_lamp(const Node &node, JsonText &json, JsonText &extras)

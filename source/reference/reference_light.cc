@@ -94,7 +94,13 @@ class CameraRays {
         size_px_(size_px),
         is_perspective_(camera.kind == scene::CameraKind::Perspective),
         near_(camera.near),
-        far_(camera.far > camera.near ? double(camera.far) : std::numeric_limits<double>::infinity())
+        far_(camera.far > camera.near ? double(camera.far) : std::numeric_limits<double>::infinity()),
+        aperture_radius_(is_perspective_ ? double(camera.aperture_radius) : 0.0),
+        focus_distance_(camera.focus_distance > 0.0F ? double(camera.focus_distance)
+                                                     : std::numeric_limits<double>::infinity()),
+        aperture_blades_(camera.aperture_blades),
+        aperture_rotation_(camera.aperture_rotation),
+        aperture_ratio_(camera.aperture_ratio)
   {
     const double image_aspect = double(size_px.x) / double(size_px.y);
     half_size_.y =
@@ -102,6 +108,8 @@ class CameraRays {
     const double frame_aspect = !is_perspective_ ? std::abs(double(camera.half_width) / double(camera.half_height))
                                 : camera.aspect > 0.0F ? double(camera.aspect)
                                                        : image_aspect;
+    const glm::dvec2 frame_half_size(half_size_.y * frame_aspect, half_size_.y);
+    middle_ = 2.0 * frame_half_size * glm::dvec2(camera.shift_x, camera.shift_y);
     // The camera's frame is centred in the image and completely visible.
     half_size_.y *= std::max(frame_aspect / image_aspect, 1.0);
     half_size_.x = half_size_.y * image_aspect;
@@ -110,22 +118,53 @@ class CameraRays {
     }
   }
 
-  /** \a at_px: relative to the lower left corner of the image. The ray's t is the depth along the view axis, metres. */
-  [[nodiscard]] Ray at(const glm::dvec2 &at_px) const
+  /**
+   * \a at_px: relative to the lower left corner of the image. \a key: of the pixel. The ray's t is the depth along the
+   * view axis, metres.
+   */
+  [[nodiscard]] Ray at(const glm::dvec2 &at_px, int sample, std::uint64_t key) const
   {
-    const glm::dvec2 across = half_size_ * (2.0 * at_px / glm::dvec2(size_px_) - 1.0);
-    const glm::dvec4 eye = is_perspective_ ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(across, 0.0, 1.0);
-    const glm::dvec4 forward = is_perspective_ ? glm::dvec4(across, -1.0, 0.0) : glm::dvec4(0.0, 0.0, -1.0, 0.0);
+    const glm::dvec2 across = middle_ + half_size_ * (2.0 * at_px / glm::dvec2(size_px_) - 1.0);
+    const glm::dvec2 point = aperture_radius_ > 0.0 ? aperture_point(sample, key) : glm::dvec2(0.0);
+    const glm::dvec4 eye = is_perspective_ ? glm::dvec4(point, 0.0, 1.0) : glm::dvec4(across, 0.0, 1.0);
+    const glm::dvec4 forward =
+        is_perspective_ ? glm::dvec4(across - point / focus_distance_, -1.0, 0.0) : glm::dvec4(0.0, 0.0, -1.0, 0.0);
     return {glm::dvec3(world_from_camera_ * eye), glm::dvec3(world_from_camera_ * forward), near_, far_};
   }
 
  private:
+  /** Metres. Independent of the points of lamps and pixels, which are multiples of other irrational numbers. */
+  [[nodiscard]] glm::dvec2 aperture_point(int sample, std::uint64_t key) const
+  {
+    const double first = fraction(sample * (std::numbers::sqrt2 - 1.0) + fraction(mixed(key ^ 1)));
+    const double second = fraction(sample * (std::numbers::sqrt3 - 1.0) + fraction(mixed(key ^ 2)));
+    const double corner_count = aperture_blades_;
+    const double place = first * corner_count;
+    const double corner = std::floor(place);
+    const double radius = std::sqrt(aperture_blades_ == 0 ? first : place - corner);
+    const double half_angle = std::numbers::pi / corner_count;
+    const double angle =
+        aperture_blades_ == 0 ? 2.0 * std::numbers::pi * second : aperture_rotation_ + 2.0 * half_angle * corner;
+    const double across = aperture_blades_ == 0 ? 0.0 : (2.0 * second - 1.0) * std::sin(half_angle);
+    const double along = aperture_blades_ == 0 ? 1.0 : std::cos(half_angle);
+    const glm::dvec2 point(along * std::cos(angle) - across * std::sin(angle),
+                           along * std::sin(angle) + across * std::cos(angle));
+    return aperture_radius_ * radius * glm::dvec2(point.x / aperture_ratio_, point.y);
+  }
+
   glm::dmat4 world_from_camera_;
   glm::dvec2 size_px_;
   bool is_perspective_;
   double near_;
   double far_;
+  double aperture_radius_;
+  double focus_distance_;
+  int aperture_blades_;
+  double aperture_rotation_;
+  double aperture_ratio_;
   glm::dvec2 half_size_{1.0};
+  /** Of the image, on the plane at a distance of 1 where perspective. */
+  glm::dvec2 middle_{0.0};
 };
 
 /** The inputs that all samples of a picture share. */
@@ -290,7 +329,7 @@ void Integrator::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px
       const std::uint64_t key = pixel_key(settings.seed, {x, y});
       for (int i = 0; i < settings.sample_count; i++) {
         const glm::dvec2 at_px = glm::dvec2(x, y) + lattice_point(i, settings.sample_count, key);
-        const glm::dvec3 light = radiance(rays.at(at_px), i, key);
+        const glm::dvec3 light = radiance(rays.at(at_px, i, key), i, key);
         for (int to_y = std::max(y - 1, low_px.y); to_y <= std::min(y + 1, high_px.y - 1); to_y++) {
           for (int to_x = std::max(x - 1, low_px.x); to_x <= std::min(x + 1, high_px.x - 1); to_x++) {
             const double weight = filter_weight(at_px.x - (to_x + 0.5)) * filter_weight(at_px.y - (to_y + 0.5));
@@ -350,7 +389,8 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
     for (int sample = 0; sample < settings.sample_count; sample++) {
       const glm::dvec2 share = lattice_point(sample, settings.sample_count, key);
       const glm::dvec2 from_center_px = {filter_quantile(share.x), filter_quantile(share.y)};
-      sum += integrator.radiance(integrator.rays.at(glm::dvec2(pixels[i]) + 0.5 + from_center_px), sample, key);
+      const Ray ray = integrator.rays.at(glm::dvec2(pixels[i]) + 0.5 + from_center_px, sample, key);
+      sum += integrator.radiance(ray, sample, key);
     }
     light[i] = glm::vec4(sum / double(settings.sample_count), 1.0F);
     if (settings.progress) {

@@ -36,6 +36,36 @@ void check(const scene::PlacedCamera &camera)
     refuse(fmt::format("near plane {}, far plane {} or aspect ratio {} is not a number that can be drawn", camera.near,
                        camera.far, camera.aspect));
   }
+  if (!std::isfinite(camera.shift_x + camera.shift_y)) {
+    refuse(fmt::format("shift of {} and {} is not finite", camera.shift_x, camera.shift_y));
+  }
+  // Of the rays through the edge of the aperture to the middle of the plane in focus, whose products with the
+  // projection must be finite.
+  constexpr float slope_max = 1e25F;
+  const float reach = camera.aperture_radius / std::min(camera.aperture_ratio, 1.0F);
+  const float slope = camera.focus_distance == 0.0F ? 0.0F : reach / camera.focus_distance;
+  if (!(camera.aperture_radius >= 0.0F && reach <= slope_max && camera.focus_distance >= 0.0F && slope <= slope_max &&
+        camera.aperture_ratio > 0.0F && std::isfinite(camera.aperture_rotation) &&
+        (camera.aperture_blades == 0 || camera.aperture_blades >= 3))) {
+    refuse(
+        fmt::format("aperture of radius {}, ratio {}, rotation {} and {} blades, with a focus at {}, cannot be drawn",
+                    camera.aperture_radius, camera.aperture_ratio, camera.aperture_rotation, camera.aperture_blades,
+                    camera.focus_distance));
+  }
+}
+
+/** A pinhole where the aperture is closed or the camera is orthographic. */
+static draw::Lens lens_of(const scene::PlacedCamera &camera)
+{
+  if (camera.aperture_radius == 0.0F || camera.kind != scene::CameraKind::Perspective) {
+    return {};
+  }
+  return {
+      .radius = camera.aperture_radius,
+      .focus_distance = camera.focus_distance > 0.0F ? camera.focus_distance : std::numeric_limits<float>::infinity(),
+      .blades = camera.aperture_blades,
+      .rotation = camera.aperture_rotation,
+      .ratio = camera.aperture_ratio};
 }
 
 draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const glm::dvec3 &origin_ws)
@@ -50,6 +80,8 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
   const float frame_aspect = !is_perspective        ? std::abs(camera.half_width / camera.half_height)
                              : camera.aspect > 0.0F ? camera.aspect
                                                     : image_aspect;
+  // Of the middle of the frame, which may be narrower than the image.
+  const glm::vec2 shift = 2.0F * half_height * glm::vec2(frame_aspect * camera.shift_x, camera.shift_y);
   if (image_aspect < frame_aspect) {
     half_height *= frame_aspect / image_aspect;
   }
@@ -70,9 +102,13 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
         draw::orthographic(std::copysign(half_width, camera.half_width), std::copysign(half_height, camera.half_height),
                            camera.near, std::isinf(far) ? depth_max : far);
   }
+  for (int axis = 0; axis < 2; axis++) {
+    const float shift_clip = shift[axis] * clip_from_view[axis][axis];
+    clip_from_view[is_perspective ? 2 : 3][axis] = is_perspective ? shift_clip : -shift_clip;
+  }
   glm::dmat4 world_from_camera = camera.world_from_camera;
   world_from_camera[3] -= glm::dvec4(origin_ws, 0.0);
-  return {glm::mat4(glm::inverse(world_from_camera)), clip_from_view};
+  return {glm::mat4(glm::inverse(world_from_camera)), clip_from_view, lens_of(camera)};
 }
 
 }  // namespace gnomon::render_scene

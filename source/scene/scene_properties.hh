@@ -345,6 +345,13 @@ struct Camera {
   /** Distances along the view direction; near > 0 when perspective, far > near. */
   float near = 0.1F;
   float far = 0.0F;
+  float shift_x = 0.0F;
+  float shift_y = 0.0F;
+  float aperture_radius = 0.0F;
+  float focus_distance = 0.0F;
+  int aperture_blades = 0;
+  float aperture_rotation = 0.0F;
+  float aperture_ratio = 1.0F;
 
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
@@ -355,6 +362,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
 {
   using enum CameraKind;
   constexpr unsigned lens = unsigned(Aspect::Lens);
+  constexpr unsigned any = bits(Perspective, Orthographic);
   visit(property(&Camera::name,
                  {.name = "name", .aspect = unsigned(Aspect::Name), .sentence = "For messages and files."}));
   visit(property(&Camera::kind,
@@ -418,6 +426,68 @@ constexpr void Camera::for_each_property(Visit &&visit)
                                 .path = "zfar",
                                 .aspect = lens,
                                 .sentence = "Distance of the far plane. 0 where perspective: infinite."}));
+  visit(property(&Camera::shift_x, {.name = "shift_x",
+                                    .label = "Shift x",
+                                    .min = -100,
+                                    .max = 100,
+                                    .extra_kinds = any,
+                                    .aspect = lens,
+                                    .sentence = "Shift of the frame to the right, in widths of the frame."}));
+  visit(property(&Camera::shift_y, {.name = "shift_y",
+                                    .label = "Shift y",
+                                    .min = -100,
+                                    .max = 100,
+                                    .extra_kinds = any,
+                                    .aspect = lens,
+                                    .sentence = "Shift of the frame upwards, in heights of the frame."}));
+  visit(property(&Camera::aperture_radius,
+                 {.name = "aperture_radius",
+                  .option = "aperture",
+                  .label = "Aperture radius",
+                  .unit = "m",
+                  .kinds = bits(Perspective),
+                  .extra_kinds = bits(Perspective),
+                  .aspect = lens,
+                  .sentence = "Half the height of the aperture: focal length / (2 f-number). 0: all is in focus."}));
+  visit(property(&Camera::focus_distance,
+                 {.name = "focus_distance",
+                  .option = "focus",
+                  .label = "Focus distance",
+                  .unit = "m",
+                  .min = smallest_length,
+                  .zero = "infinite",
+                  .first = 1,
+                  .kinds = bits(Perspective),
+                  .extra_kinds = bits(Perspective),
+                  .aspect = lens,
+                  .sentence = "Distance of the plane in focus, along the view direction. 0: infinite."}));
+  visit(property(&Camera::aperture_blades, {.name = "aperture_blades",
+                                            .label = "Aperture blades",
+                                            .min = 3,
+                                            .max = 64,
+                                            .zero = "round",
+                                            .first = 6,
+                                            .kinds = bits(Perspective),
+                                            .extra_kinds = bits(Perspective),
+                                            .aspect = lens,
+                                            .sentence = "Corners of a polygonal aperture. 0: round."}));
+  visit(property(&Camera::aperture_rotation,
+                 {.name = "aperture_rotation",
+                  .label = "Aperture rotation",
+                  .unit = "rad",
+                  .min = -float_max,
+                  .kinds = bits(Perspective),
+                  .extra_kinds = bits(Perspective),
+                  .aspect = lens,
+                  .sentence = "Angle from the camera's +X axis to the middle of an edge, counter-clockwise."}));
+  visit(property(&Camera::aperture_ratio, {.name = "aperture_ratio",
+                                           .label = "Aperture ratio",
+                                           .min = 1e-3,
+                                           .max = 1e3,
+                                           .kinds = bits(Perspective),
+                                           .extra_kinds = bits(Perspective),
+                                           .aspect = lens,
+                                           .sentence = "Height of the aperture over its width."}));
 }
 
 enum class AlphaMode { Opaque, Mask, Blend };

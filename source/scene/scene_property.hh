@@ -77,6 +77,11 @@ struct Description {
   {
     return kinds == 0 || (kinds >> kind & 1U) != 0;
   }
+  /** Whether things of the kind with this number have the property as an extra in files. */
+  [[nodiscard]] constexpr bool has_extra(unsigned kind) const
+  {
+    return (extra_kinds >> kind & 1U) != 0;
+  }
   /** Whether \a value is within the limits when it is stored as a float. false: NaN. */
   [[nodiscard]] constexpr bool allows(double value) const
   {

@@ -23,6 +23,27 @@ void add_camera_images(ImageCases &cases)
     test_view.camera.near = ratio > 1e6 ? 1e-6F : 1.0F;
     test_view.camera.far = float(double(test_view.camera.near) * ratio);
   });
+  const auto with_lens = [](double radius, double focus) {
+    TestView test_view = table(LampKind::Point);
+    test_view.camera.aperture_radius = float(radius);
+    test_view.camera.focus_distance = float(focus);
+    return test_view;
+  };
+  for (const double focus : {1e-12, 0.1, 10.0, 1e12, 0.0}) {
+    cases.add({"camera", fmt::format("small aperture, focus {:g} m", focus), "picture with this aperture", "m",
+               "the picture of a pinhole"},
+              1e-3, {0.0, 1e-24, 1e-18}, [=](TestViewRenderer &renderer, double radius) {
+                const DrawSettings settings = with(ShadowKind::Hard, {64, 48}, 4);
+                return relative_rmse(renderer.draw(with_lens(radius, focus), settings),
+                                     renderer.draw(with_lens(0.0, focus), settings));
+              });
+    cases.add({"camera", fmt::format("wide aperture, focus {:g} m", focus), "pixels that are not finite", "m",
+               "closed form", "share of pixels"},
+              0.0, {1e-2, 1.0, 1e3, 1e6, 1e12}, [=](TestViewRenderer &renderer, double radius) {
+                const Picture picture = renderer.draw(with_lens(radius, focus), with(ShadowKind::Hard, {64, 48}, 4));
+                return double(picture.non_finite_count()) / double(picture.pixels.size());
+              });
+  }
   // Small objects in the picture have a larger fraction of edges.
   add("angle", 0.06, "rad", {1e-4, 1e-2, 0.5, 1.0, 2.0},
       [](TestView &test_view, double angle) { test_view.camera.vertical_angle = float(angle); });

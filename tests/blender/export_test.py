@@ -357,10 +357,35 @@ class Objects(ExportTest):
             walk(file.json['scenes'][0]['nodes'])
             self.assertEqual((order[0], len(order)), (name, 3))
         camera = self.scene.camera.data
-        camera.shift_x, camera.dof.use_dof, camera.type = 0.1, True, 'PANO'
-        report = File().report
-        for text in ("its shift is not drawn", "its depth of field is not drawn", "a panoramic camera"):
-            self.assertIn(f"camera 'third': {text}", report)
+        camera.dof.use_dof, camera.type = True, 'ORTHO'
+        self.assertIn("camera 'third': its depth of field is not drawn", File().report)
+        camera.type = 'PANO'
+        self.assertIn("camera 'third': a panoramic camera", File().report)
+
+    def test_shift_and_depth_of_field(self):
+        thing = self.scene.camera = add('eye', bpy.data.cameras.new('eye'), (0, -5, 0))
+        thing.rotation_euler.x = math.pi / 2
+        camera = thing.data
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 400, 100
+
+        def extras():
+            return next(node for node in File().json['nodes'] if node['name'] == 'eye').get('extras', {})
+
+        self.assertEqual(extras(), {})
+        # The sensor fits the longer side, of four heights.
+        camera.shift_x, camera.shift_y = 0.1, 0.2
+        self.assertAlmostEqual(extras()['gnomon_shift_x'], 0.1, places=5)
+        self.assertAlmostEqual(extras()['gnomon_shift_y'], 0.8, places=5)
+        camera.shift_x = camera.shift_y = 0
+        dof = camera.dof
+        dof.use_dof, dof.aperture_fstop, dof.focus_distance, camera.lens = True, 2.0, 7.0, 80
+        self.assertAlmostEqual(extras()['gnomon_aperture_radius'], 0.02, places=6)
+        self.assertAlmostEqual(extras()['gnomon_focus_distance'], 7.0, places=5)
+        dof.focus_object = add('target', None, (3, 4, 1))
+        bpy.context.view_layer.update()
+        self.assertAlmostEqual(extras()['gnomon_focus_distance'], 9.0, places=5)
+        dof.aperture_blades, dof.aperture_ratio = 6, 1.5
+        self.assertEqual((extras()['gnomon_aperture_blades'], extras()['gnomon_aperture_ratio']), (6, 1.5))
 
     def test_there_is_one_animation(self):
         for i in range(3):

@@ -39,7 +39,7 @@ def complete(old=None):
         if shown is not None and shown.painter.error is not None:
             raise RuntimeError(shown.painter.error)
         picture = shown and shown.painter.picture
-        if picture and picture[2] and picture is not old and picture is shown.shown and \
+        if picture and picture[1] and picture is not old and picture is shown.shown and \
                 shown.painter.shown_count == shown.painter.wanted_count:
             return picture
         yield
@@ -52,7 +52,7 @@ def expected():
     collected.world = shown.content.world
     fresh = mirror.Mirror(settings.gnomon)
     fresh.show(collected)
-    view = viewport.View(region(), space().region_3d)
+    view = viewport.View(region(), space().region_3d, bpy.context.scene.camera)
     painter = Fresh(fresh, view, shown.settings)
     return painter.picture
 
@@ -172,6 +172,10 @@ def steps():
         space().region_3d.view_perspective = 'CAMERA'
         space().region_3d.view_camera_offset = (0.2, 0.1)
 
+    def blurred():
+        camera = scene.camera.data
+        camera.dof.use_dof, camera.dof.aperture_fstop, camera.dof.focus_distance = True, 0.1, 3
+
     def textured():
         image = bpy.data.images.new('noise', 16, 8)
         image.pixels = numpy.random.default_rng(1).random(4 * 16 * 8)
@@ -203,7 +207,7 @@ def steps():
         bpy.data.objects.remove(bpy.data.objects['Cube'])
 
     for change in (moved, colored, added, modified, instanced, edited, textured, painted, in_another_frame, strengthened, kind_changed, set_samples,
-                   orthographic, shifted, undone, hidden, removed):
+                   orthographic, shifted, blurred, undone, hidden, removed):
         before, begun = picture, time.monotonic()
         change()
         picture = yield from check(before)

@@ -377,6 +377,11 @@ Scene full_scene()
     if (kind == scene::CameraKind::Perspective) {
       camera.vertical_angle = value(0.1F, 1);
       camera.aspect = value(1, 2);
+      camera.aperture_radius = value(0.01F, 0.1F);
+      camera.focus_distance = value(1, 9);
+      camera.aperture_blades = 7;
+      camera.aperture_rotation = value(-1, 1);
+      camera.aperture_ratio = value(0.5F, 2);
     }
     else {
       camera.half_width = value(1, 2);
@@ -384,6 +389,8 @@ Scene full_scene()
       camera.far = value(50, 60);
     }
     camera.near = value(0.01F, 0.1F);
+    camera.shift_x = value(-1, 1);
+    camera.shift_y = value(-1, 1);
     scene::Node node;
     node.name = "stand";
     node.camera = scene.add(camera);

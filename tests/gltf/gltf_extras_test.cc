@@ -156,6 +156,45 @@ TEST(GltfNodes, NamesOfLampsAndCamerasAreExtras)
   EXPECT_NO_WARNING(scene, "gnomon_");
 }
 
+TEST(GltfCamera, ShiftAndApertureAreExtras)
+{
+  GltfBuilder builder = triangle_scene();
+  builder.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}}}});
+  builder.append("cameras",
+                 {{"type", "orthographic"}, {"orthographic", {{"xmag", 2}, {"ymag", 1}, {"znear", 0}, {"zfar", 10}}}});
+  const json extras = {{"gnomon_shift_x", 0.25},     {"gnomon_shift_y", -0.5},        {"gnomon_aperture_radius", 0.02},
+                       {"gnomon_focus_distance", 3}, {"gnomon_aperture_blades", 6.0}, {"gnomon_aperture_rotation", 0.1},
+                       {"gnomon_aperture_ratio", 2}};
+  builder.node({{"name", "eye"}, {"camera", 0}, {"extras", extras}});
+  builder.node({{"name", "plan"}, {"camera", 1}, {"extras", extras}});
+  const Scene scene = import(builder);
+  const std::vector<scene::PlacedCamera> cameras = scene.placed_cameras();
+  ASSERT_EQ(cameras.size(), 2U);
+  for (const scene::PlacedCamera &camera : cameras) {
+    EXPECT_EQ(camera.shift_x, 0.25F);
+    EXPECT_EQ(camera.shift_y, -0.5F);
+  }
+  EXPECT_EQ(cameras[0].aperture_radius, 0.02F);
+  EXPECT_EQ(cameras[0].focus_distance, 3.0F);
+  EXPECT_EQ(cameras[0].aperture_blades, 6);
+  EXPECT_EQ(cameras[0].aperture_rotation, 0.1F);
+  EXPECT_EQ(cameras[0].aperture_ratio, 2.0F);
+  EXPECT_EQ(cameras[1].aperture_radius, 0.0F);
+  EXPECT_NO_WARNING(scene, "camera 'eye': extra");
+  EXPECT_WARNING(scene, "camera 'plan': extra 'gnomon_aperture_radius' does not apply to this kind of camera");
+
+  builder.document["nodes"][1]["extras"] = {{"gnomon_focus_distance", 0}};
+  EXPECT_EQ(import(builder).placed_cameras().front().focus_distance, 0.0F) << "infinite";
+  for (const auto &[wrong, message] : std::vector<std::pair<json, std::string>>{
+           {{{"gnomon_aperture_blades", 2}},
+            "camera 'eye': gnomon_aperture_blades is 2, and must be from 3 to 64, or 0"},
+           {{{"gnomon_aperture_radius", -1}}, "camera 'eye': gnomon_aperture_radius is -1, and must be from 0"},
+           {{{"gnomon_shift_x", "far"}}, "camera 'eye': gnomon_shift_x is 'far', and must be a number"}}) {
+    builder.document["nodes"][1]["extras"] = wrong;
+    EXPECT_HAS(import_error(builder), message);
+  }
+}
+
 // ---- Worlds ----
 
 /** A triangle in a scene with these extras. */

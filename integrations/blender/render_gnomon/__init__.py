@@ -10,7 +10,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import closed, engine, lamps, materials, viewport, world
+from . import cameras, closed, engine, lamps, materials, viewport, world
 
 bl_info = {
     "name": "Gnomon",
@@ -183,7 +183,9 @@ class Export:
         if thing.type == 'LIGHT':
             extras = {**self.lamp_extras(node, thing), **extras}
         elif thing.type == 'CAMERA':
-            self.report_camera(thing)
+            found, remarks = cameras.extras_of(thing, self.scene)
+            self.report.add_all(f"camera '{thing.name}'", remarks)
+            extras = {**found, **extras}
         elif not thing.visible_shadow:
             extras.setdefault('gnomon_casts_shadow', False)
         add_extras(node, extras)
@@ -205,15 +207,6 @@ class Export:
         if not casts and (extension is not None or extras):
             extras['gnomon_shadow'] = 'none'
         return extras
-
-    def report_camera(self, thing):
-        camera, what = thing.data, f"camera '{thing.name}'"
-        if camera.type == 'PANO':
-            self.report.add(what, "a panoramic camera is neither written nor drawn")
-        if camera.shift_x or camera.shift_y:
-            self.report.add(what, "its shift is not drawn")
-        if camera.dof.use_dof:
-            self.report.add(what, "its depth of field is not drawn")
 
     def write_material(self, element, material):
         self.report.add_all(f"material '{material.name}'", materials.remarks_of(material))

@@ -16,9 +16,8 @@ import bpy
 import gpu
 import numpy
 from gpu_extras.presets import draw_texture_2d
-from mathutils import Matrix
 
-from . import collect, mirror, settings, world
+from . import cameras, collect, mirror, settings, world
 
 BAKE = os.path.join(os.path.dirname(__file__), 'bake_world.py')
 # Width of the picture of a world, texels.
@@ -27,40 +26,34 @@ WORLD_WIDTH = 512
 SECONDS = 0.1
 # Between two looks for new pictures.
 POLL_SECONDS = 0.02
-# A part of a view that is far from its centre is cut out of a larger picture.
-ENLARGED_MAX = 4.0
 
 
 class View:
-    """A camera for a part of a picture.
+    """The camera of a region.
 
-    size: of the picture that is drawn, pixels; offset: of the region's lower left corner in it; matrix: world from camera;
-    camera: properties of a gnomon.Camera, without enumerators
+    size: pixels; matrix: world from camera; camera: properties of a gnomon.Camera, without enumerators
     """
 
-    def __init__(self, region, region_3d):
-        width, height = region.width, region.height
+    def __init__(self, region, region_3d, thing=None):
+        """thing: the camera that the region may look through."""
+        self.size = region.width, region.height
         projection = region_3d.window_matrix
         self.matrix = collect.matrix_of(region_3d.view_matrix.inverted())
         scale_x, scale_y = projection[0][0], projection[1][1]
         z, w = projection[2][2], projection[2][3]
         self.is_perspective = projection[3][3] == 0.0
-        if not self.is_perspective:
-            self.size, self.offset = (width, height), (0, 0)
-            shift = Matrix.Translation((-projection[0][3] / scale_x, -projection[1][3] / scale_y, 0.0))
-            self.matrix = collect.matrix_of(region_3d.view_matrix.inverted() @ shift)
-            self.camera = {'half_width': 1 / scale_x, 'half_height': 1 / scale_y, 'near': (w + 1) / z, 'far': (w - 1) / z}
-            return
-        # The frustum is symmetrical about the axis, and the region is a part of its picture.
-        sizes = []
-        for length, shift in ((width, projection[0][2]), (height, projection[1][2])):
-            whole = round(length * min(1 + abs(shift), ENLARGED_MAX))
-            sizes.append((whole, whole - length if shift > 0 else 0))
-        self.size, self.offset = zip(*sizes)
-        self.camera = {'vertical_angle': 2 * math.atan(self.size[1] / height / scale_y), 'near': w / (z - 1), 'far': w / (z + 1)}
+        # The middle of the region in widths and heights from the axis.
+        middle = [projection[axis][2 if self.is_perspective else 3] / 2 for axis in (0, 1)]
+        if self.is_perspective:
+            aperture = cameras.aperture_of(thing) if thing is not None and region_3d.view_perspective == 'CAMERA' else {}
+            self.camera = {'vertical_angle': 2 * math.atan(1 / scale_y), 'near': w / (z - 1), 'far': w / (z + 1),
+                           'shift_x': middle[0], 'shift_y': middle[1], 'aperture_radius': 0.0, **aperture}
+        else:
+            self.camera = {'half_width': 1 / scale_x, 'half_height': 1 / scale_y, 'near': (w + 1) / z, 'far': (w - 1) / z,
+                           'shift_x': -middle[0], 'shift_y': -middle[1]}
 
     def key(self):
-        return self.size, self.offset, self.is_perspective, tuple(self.camera.values()), self.matrix.tobytes()
+        return self.size, self.is_perspective, tuple(self.camera.items()), self.matrix.tobytes()
 
 
 class Painter:
@@ -71,7 +64,7 @@ class Painter:
         self.wanted = {}
         self.wanted_count = 0
         self.is_ended = False
-        # (array, View, whether it is complete)
+        # (array, whether it is complete)
         self.picture = None
         # wanted_count of the picture.
         self.shown_count = 0
@@ -143,7 +136,7 @@ class Painter:
                 renderer.size = view.size
             picture, is_idle = renderer.refine(SECONDS, shown.eye)
             report = renderer.report()
-            self.publish(picture=(picture, view, is_idle), shown_count=count, samples=report.sample_count, remarks=report.warnings + report.limits)
+            self.publish(picture=(picture, is_idle), shown_count=count, samples=report.sample_count, remarks=report.warnings + report.limits)
 
 
 def baked(world_of_scene, done):
@@ -231,7 +224,8 @@ class Viewport:
             self.world = values
 
     def draw(self, engine, context, depsgraph):
-        view = View(context.region, context.region_data)
+        space = context.space_data
+        view = View(context.region, context.region_data, space.camera if space.use_local_camera else context.scene.camera)
         if view.key() != self.view_key:
             self.view_key = view.key()
             self.painter.want(view=view)
@@ -254,7 +248,7 @@ class Viewport:
             return
         if picture is not self.shown:
             self.shown = picture
-            self.texture = texture_of(*picture[:2], context.region)
+            self.texture = texture_of(picture[0])
         gpu.state.blend_set('ALPHA_PREMULT')
         engine.bind_display_space_shader(depsgraph.scene)
         draw_texture_2d(self.texture, (0, 0), context.region.width, context.region.height)
@@ -262,15 +256,11 @@ class Viewport:
         gpu.state.blend_set('NONE')
 
 
-def texture_of(pixels, view, region):
-    """The region's part of a picture, linear."""
-    left, bottom = view.offset
-    height = pixels.shape[0]
-    width, rows = view.size[0], view.size[1]
-    part = pixels[::-1][bottom:min(bottom + region.height, rows), left:min(left + region.width, width)]
-    part = numpy.ascontiguousarray(part)
-    data = gpu.types.Buffer('FLOAT', part.size, part.reshape(-1))
-    return gpu.types.GPUTexture((part.shape[1], part.shape[0]), format='RGBA16F', data=data)
+def texture_of(pixels):
+    """A picture, linear, with its rows from the bottom."""
+    rows = numpy.ascontiguousarray(pixels[::-1])
+    data = gpu.types.Buffer('FLOAT', rows.size, rows.reshape(-1))
+    return gpu.types.GPUTexture((rows.shape[1], rows.shape[0]), format='RGBA16F', data=data)
 
 
 def poll():

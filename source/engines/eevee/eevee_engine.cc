@@ -191,6 +191,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = data_of(viewport);
+  const draw::View eye_view = view_through_lens(view, data.sample_index, settings_.sample_count, settings_.seed);
   draw::View sample_view = view_of_sample(view, viewport, settings_, data.sample_index);
   data.visible.update(sample_view, scene_.objects());
   const auto is_visible = [&](draw::ObjectIndex object) { return data.visible.contains(object); };
@@ -211,7 +212,8 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     record(viewport);
     if (is_for_feedback) {
       // Cascades are fitted to the same depths, whatever range of samples is drawn.
-      sample_view = view_of_sample(view, viewport, settings_, 0);
+      sample_view = view_of_sample({view.view_from_world(), view.clip_from_view()}, viewport, settings_, 0);
+      data.visible.update(sample_view, scene_.objects());
     }
     data.blend.order(scene_, sample_view, data.visible, data.materials.transmissive, data.is_transmission_seen);
     update_view(data, sample_view);
@@ -219,9 +221,8 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
   // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible,
   // unless the means of converged pixels must follow.
   if (is_sample_seen || viewport.samples_drawn() == 0 || data.adaptive.is_active()) {
-    FrameSample sample{data.state(settings_), viewport,        view,
-                       sample_view,           scene_.bounds(), data.sample_index,
-                       data.visible,          is_for_feedback, awaits_depths};
+    FrameSample sample{data.state(settings_), viewport,          view,         eye_view,        sample_view,
+                       scene_.bounds(),       data.sample_index, data.visible, is_for_feedback, awaits_depths};
     data.frame.draw(sample, FrameStep::When::EachSample);
   }
   if (is_for_feedback) {
@@ -239,7 +240,8 @@ void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
   if (data.is_seen) {
     data.output.record(viewport, view, *shaders_, settings_, !data.blend.is_empty());
   }
-  FrameSample sample{data.state(settings_), viewport, view, view, scene_.bounds(), data.sample_index, data.visible};
+  FrameSample sample{data.state(settings_), viewport,          view,        view, view,
+                     scene_.bounds(),       data.sample_index, data.visible};
   data.frame.draw(sample, FrameStep::When::EachTarget);
 }
 

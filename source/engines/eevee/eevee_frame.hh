@@ -56,9 +56,11 @@ struct DrawnStep;
 /** The sample that is being drawn. */
 struct FrameSample : FrameState {
   draw::Viewport &viewport;
-  /** The view of the picture and its guard band, without the sample's offset. */
+  /** The view of the picture and its guard band. */
   const draw::View &view;
-  /** The view with the sample's offset within the pixel. */
+  /** The view from the sample's point of the lens. */
+  const draw::View &eye_view;
+  /** The view from there, with the sample's offset within the pixel. */
   const draw::View &sample_view;
   /** The bounds of the scene, world space. */
   const scene::Bounds &bounds_ws;

@@ -43,8 +43,8 @@ float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
                           int index)
 {
-  return with_sample_offset(drawn_view, film_offset_px(index, settings.sample_count, settings.seed),
-                            viewport.drawn_size_px());
+  return with_sample_offset(view_through_lens(drawn_view, index, settings.sample_count, settings.seed),
+                            film_offset_px(index, settings.sample_count, settings.seed), viewport.drawn_size_px());
 }
 
 /** Set the members of \a data from which positions in the G-buffer follow. \a bounds_ws: of the scene. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_shadow_pass.hh"
 
+#include "eevee_camera.hh"
 #include "eevee_material_variants.hh"
 #include "eevee_surface_functions.hh"
 #include "shadows/shadow_casters.hh"
@@ -266,9 +267,9 @@ FrameStep shadows_step(Shadows &shadows, ShadowPass &pass, const DepthFeedback &
                 // Two viewports that draw parts in turn would never have all layers, which are one sample's, so that
                 // one draws all.
                 const int parts_max = part.is_first || !is_disturbed ? part.setup_max : draw::Viewport::no_setup_max;
-                const UpdatedLayers updated =
-                    shadows.update(viewport.device(), sample.view, pixel_size(sample.view, viewport), pass.pass(), list,
-                                   sample.lamp_points, feedback.picture(viewport.drawn_size_px()), parts_max);
+                const UpdatedLayers updated = shadows.update(
+                    viewport.device(), view_around_lens(sample.view), pixel_size(sample.view, viewport), pass.pass(),
+                    list, sample.lamp_points, feedback.picture(viewport.drawn_size_px()), parts_max);
                 viewport.set_setup(updated.part_count, updated.left_count);
               },
           .submitted = [&](FrameSample &) { shadows.submitted(); }};

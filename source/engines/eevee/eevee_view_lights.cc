@@ -31,11 +31,11 @@ void ViewLights::bind(draw::ShadingGroup &group) const
 void ViewLights::update_lists(const FrameSample &sample, gpu::CommandList &list)
 {
   const glm::ivec2 size_px = sample.viewport.drawn_size_px();
-  const Key key{sample.view, size_px, lights_.reaches_revision()};
+  const Key key{sample.eye_view, size_px, lights_.reaches_revision()};
   if (made_ != key || !texture_) {
     made_.reset();
     gpu::Device &device = sample.viewport.device();
-    lists_.build(lights_.plan().lamps, sample.view, size_px, lights_.plan().bounds_ws,
+    lists_.build(lights_.plan().lamps, sample.eye_view, size_px, lights_.plan().bounds_ws,
                  std::size_t(device.limits().buffer_texels_max));
     list.update(block_, 0, std::as_bytes(std::span(&lists_.block(), 1)));
     const std::span<const float> values = lists_.values();

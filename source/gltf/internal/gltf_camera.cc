@@ -40,8 +40,7 @@ std::string camera_fault(const Camera &camera)
     scene::for_each_number(camera.*row.member, [&](double value) {
       // No view begins behind the camera, and a perspective one not at it.
       const Range range = row.name != "near" ? range_of(row) : is_perspective ? length_range : not_negative;
-      const bool is_zero = value == 0.0 && !row.zero.empty();
-      if (fault.empty() && !is_zero && !range.contains(value)) {
+      if (fault.empty() && !range.contains(value)) {
         const std::string_view member = row.path.substr(row.path.rfind('/') + 1);
         fault = std::string(member) + ' ' + text(value) + " must be " + range.text();
       }
@@ -74,6 +73,13 @@ glm::dmat4 looking(const glm::dvec3 &position, const glm::dvec3 &forward, const 
 
 }  // namespace
 
+bool is_camera_extra(std::string_view key)
+{
+  bool is_extra = false;
+  Camera::for_each_property([&](const auto &row) { is_extra |= row.extra_kinds != 0 && extra_key(row) == key; });
+  return is_extra;
+}
+
 std::optional<Camera> camera_on(const File &file, int node_index, Warnings &warnings)
 {
   const Model::Node &node = file.model.nodes[node_index];
@@ -96,10 +102,17 @@ std::optional<Camera> camera_on(const File &file, int node_index, Warnings &warn
     camera.near = narrowed(source.znear);
     camera.far = narrowed(source.zfar);
   }
+  const std::string what = "camera '" + printable(camera.name) + '\'';
   if (const std::string fault = camera_fault(camera); !fault.empty()) {
-    warnings.add("camera '" + printable(camera.name) + '\'', "left out: " + fault);
+    warnings.add(what, "left out: " + fault);
     return std::nullopt;
   }
+  ExtraReader(node.extras, what).read_properties(unsigned(camera.kind), camera);
+  Camera::for_each_property([&](const auto &row) {
+    if (row.extra_kinds != 0 && !row.has_extra(unsigned(camera.kind)) && node.extras.count(extra_key(row)) > 0) {
+      warnings.add(what, "extra '" + extra_key(row) + "' does not apply to this kind of camera");
+    }
+  });
   return camera;
 }
 

@@ -6,12 +6,16 @@
 #include "scene.hh"
 
 #include <optional>
+#include <string_view>
 
 /** Reads cameras, and makes the default camera and lamp of files without one. Internal to source/gltf. */
 namespace gnomon::gltf {
 
 /** The camera on a node; empty if there is none, or if its numbers are invalid. */
 [[nodiscard]] std::optional<scene::Camera> camera_on(const File &file, int node, Warnings &warnings);
+
+/** Whether a camera may have the extra. */
+[[nodiscard]] bool is_camera_extra(std::string_view key);
 
 /** Name of the default camera, the default lamp and their nodes. */
 constexpr const char *default_name = "default";

@@ -13,7 +13,7 @@ std::string Range::text() const
   if (least > 0.0) {
     return "at least " + gltf::text(least) + " or at most -" + gltf::text(least);
   }
-  return "from " + gltf::text(min) + " to " + gltf::text(max);
+  return "from " + gltf::text(min) + " to " + gltf::text(max) + (zero.empty() || min <= 0.0 ? "" : ", or 0");
 }
 
 std::string written(const Model::Extra &extra)

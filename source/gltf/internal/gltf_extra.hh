@@ -22,10 +22,12 @@ struct Range {
   double max;
   /** \see scene::Description::least */
   double least = 0.0;
+  /** \see scene::Description::zero */
+  std::string_view zero{};
 
   [[nodiscard]] bool contains(double value) const
   {
-    return scene::Description{.name = "", .min = min, .max = max, .least = least}.allows(value);
+    return scene::Description{.name = "", .min = min, .max = max, .least = least, .zero = zero}.allows(value);
   }
   [[nodiscard]] std::string text() const;
 };
@@ -48,7 +50,7 @@ constexpr Range length_range{length_min, large};
 /** The limits of a property in a file. \a factor: unit of the file over that of the scene */
 [[nodiscard]] inline Range range_of(const scene::Description &row, double factor = 1.0)
 {
-  return {std::max(row.min, -large) * factor, std::min(row.max, large) * factor, row.least * factor};
+  return {std::max(row.min, -large) * factor, std::min(row.max, large) * factor, row.least * factor, row.zero};
 }
 
 /** The text of an extra for messages. */
@@ -85,10 +87,73 @@ class ExtraReader {
   [[nodiscard]] std::string string(std::string_view key, const char *fallback) const;
   /** Three numbers. */
   [[nodiscard]] glm::vec3 color(std::string_view key, const glm::vec3 &fallback, const Range &range) const;
+  /** The enumerator whose word is the extra's value. */
+  template <typename Word>
+  [[nodiscard]] Word word(const std::string &key) const;
+  /** Sets the properties of \a part, of a thing of \a kind, that the file has as extras. */
+  template <typename Part>
+  void read_properties(unsigned kind, Part &part) const;
 
  private:
+  /** \pre the file has it */
+  template <typename Value>
+  void read_property(const scene::Description &row, const std::string &key, Value &value) const;
+
   const Model::Extras &extras_;
   std::string what_;
 };
+
+template <typename Word>
+Word ExtraReader::word(const std::string &key) const
+{
+  constexpr auto &words = scene::words<Word>;
+  const std::string value = string(key, "");
+  const auto found = std::find(words.begin(), words.end(), value);
+  if (found == words.end()) {
+    std::string wanted;
+    for (std::size_t i = 0; i < words.size(); i++) {
+      wanted += i == 0 ? "" : i + 1 == words.size() ? " or " : ", ";
+      wanted += '\'' + std::string(words[i]) + '\'';
+    }
+    fail(key, '\'' + printable(value) + '\'', wanted);
+  }
+  return static_cast<Word>(found - words.begin());
+}
+
+template <typename Value>
+void ExtraReader::read_property(const scene::Description &row, const std::string &key, Value &value) const
+{
+  const double factor = extra_factor(row);
+  const Range range = range_of(row, factor);
+  if constexpr (requires { value.has_value(); }) {
+    read_property(row, key, value.emplace());
+  }
+  else if constexpr (std::is_same_v<Value, scene::AreaShape>) {
+    // It has more words than values.
+  }
+  else if constexpr (std::is_enum_v<Value>) {
+    value = word<Value>(key);
+  }
+  else if constexpr (std::is_same_v<Value, int>) {
+    value = *whole_if_any(key, range);
+  }
+  else if constexpr (std::is_same_v<Value, float>) {
+    value = static_cast<float>(*number_if_any(key, range) / factor);
+  }
+  else if constexpr (std::is_same_v<Value, glm::vec3>) {
+    value = color(key, value, range);
+  }
+}
+
+template <typename Part>
+void ExtraReader::read_properties(unsigned kind, Part &part) const
+{
+  Part::for_each_property([&](const auto &row) {
+    const std::string key = extra_key(row);
+    if (row.has_extra(kind) && find(key) != nullptr) {
+      read_property(row, key, part.*row.member);
+    }
+  });
+}
 
 }  // namespace gnomon::gltf

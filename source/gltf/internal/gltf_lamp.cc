@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_lamp.hh"
 
+#include "internal/gltf_camera.hh"
 #include "internal/gltf_extra.hh"
 #include "internal/gltf_node.hh"
 
@@ -26,11 +27,17 @@ constexpr double angle_tolerance = 1e-6;
 /** Smallest half angle of a cone, rad. For smaller angles 1 - cos would underflow in float. */
 constexpr double cone_min = 1e-9;
 
+/** Whether the extra has a meaning on \a node without a lamp. */
+bool is_extra_without_lamp(const Model::Node &node, std::string_view key)
+{
+  return is_node_extra(key) || (node.camera >= 0 && is_camera_extra(key));
+}
+
 /** Reads the lamp on one node; every message names it. */
 class LampReader : private ExtraReader {
  public:
   LampReader(const Model::Node &node, std::string name, Warnings &warnings)
-      : ExtraReader(node.extras, "lamp '" + printable(name) + "'"), warnings_(warnings)
+      : ExtraReader(node.extras, "lamp '" + printable(name) + "'"), node_(node), warnings_(warnings)
   {
     lamp_.name = std::move(name);
   }
@@ -77,75 +84,19 @@ class LampReader : private ExtraReader {
   }
 
  private:
+  const Model::Node &node_;
   Warnings &warnings_;
   Lamp lamp_;
 
   /** Reads the extras of the lamp's kind that the file has. */
   void read_extras()
   {
-    const auto read_part = [&](auto &part) {
-      part.for_each_property([&](const auto &row) {
-        const std::string key = extra_key(row);
-        if (has_extra(row, lamp_.kind) && find(key) != nullptr) {
-          read_extra(row, key, part.*row.member);
-        }
-      });
-    };
-    read_part(lamp_);
-    read_part(lamp_.shadow);
+    read_properties(unsigned(lamp_.kind), lamp_);
+    read_properties(unsigned(lamp_.kind), lamp_.shadow);
     const LampShadow &shadow = lamp_.shadow;
     if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
       fail("gnomon_clip_end", text(*shadow.clip_end), "above gnomon_clip_start, " + text(*shadow.clip_start));
     }
-  }
-
-  /** \pre the file has it */
-  template <typename Value>
-  void read_extra(const scene::Description &row, const std::string &key, Value &value) const
-  {
-    const double factor = extra_factor(row);
-    const Range range = range_of(row, factor);
-    if constexpr (requires { value.has_value(); }) {
-      read_extra(row, key, value.emplace());
-    }
-    else if constexpr (std::is_same_v<Value, AreaShape>) {
-      // It has more words than values.
-    }
-    else if constexpr (std::is_enum_v<Value>) {
-      value = word<Value>(key);
-    }
-    else if constexpr (std::is_same_v<Value, int>) {
-      value = *whole_if_any(key, range);
-    }
-    else if constexpr (std::is_same_v<Value, float>) {
-      value = static_cast<float>(*number_if_any(key, range) / factor);
-    }
-    else if constexpr (std::is_same_v<Value, glm::vec3>) {
-      value = color(key, value, range);
-    }
-  }
-
-  static bool has_extra(const scene::Description &row, LampKind kind)
-  {
-    return (row.extra_kinds & scene::bits(kind)) != 0;
-  }
-
-  /** The enumerator whose word is the extra's value. */
-  template <typename Word>
-  Word word(const std::string &key) const
-  {
-    constexpr auto &words = scene::words<Word>;
-    const std::string value = string(key, "");
-    const auto found = std::find(words.begin(), words.end(), value);
-    if (found == words.end()) {
-      std::string wanted;
-      for (std::size_t i = 0; i < words.size(); i++) {
-        wanted += i == 0 ? "" : i + 1 == words.size() ? " or " : ", ";
-        wanted += '\'' + std::string(words[i]) + '\'';
-      }
-      fail(key, '\'' + printable(value) + '\'', wanted);
-    }
-    return static_cast<Word>(found - words.begin());
   }
 
   [[nodiscard]] LampKind punctual_kind(const std::string &type) const
@@ -185,7 +136,7 @@ class LampReader : private ExtraReader {
   void warn_idle_extras() const
   {
     for (const auto &[key, value] : extras()) {
-      if (is_node_extra(key)) {
+      if (is_extra_without_lamp(node_, key)) {
         continue;
       }
       const unsigned kinds = kinds_of_extra(key);
@@ -217,7 +168,7 @@ std::optional<Lamp> lamp_on(const File &file, int node_index, Warnings &warnings
   const bool is_area = node.light < 0 && node.extras.count("gnomon_lamp") > 0;
   if (node.light < 0 && !is_area) {
     const auto extra = std::find_if(node.extras.begin(), node.extras.end(),
-                                    [](const auto &each) { return !is_node_extra(each.first); });
+                                    [&](const auto &each) { return !is_extra_without_lamp(node, each.first); });
     if (extra != node.extras.end()) {
       warnings.add(label("node", node.name, static_cast<std::size_t>(node_index)),
                    "extra '" + printable(extra->first) + "' has no effect: the node is not a lamp");

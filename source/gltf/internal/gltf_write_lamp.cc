@@ -105,6 +105,18 @@ std::string light_json(const Lamp &lamp)
   return json.object();
 }
 
+void add_camera_extras(const Camera &camera, JsonText &extras)
+{
+  const std::string what = what_of("camera", camera.name);
+  Camera::for_each_property([&](const auto &row) {
+    if constexpr (!std::is_same_v<typename std::decay_t<decltype(row)>::Value, std::string>) {
+      if (row.has_extra(unsigned(camera.kind)) && camera.*row.member != Camera().*row.member) {
+        extras.add(extra_key(row), extra_value(row, camera.*row.member, what));
+      }
+    }
+  });
+}
+
 void add_lamp_extras(const Lamp &lamp, JsonText &extras)
 {
   const std::string what = what_of("lamp", lamp.name);
@@ -119,7 +131,7 @@ void add_lamp_extras(const Lamp &lamp, JsonText &extras)
         const bool is_implied =
             lamp.kind != LampKind::Area && row.name != "spot_blend" && part.*row.member == Part().*row.member;
         const std::string value = extra_value(row, part.*row.member, what);
-        if ((row.extra_kinds & scene::bits(lamp.kind)) != 0 && !is_implied && !value.empty()) {
+        if (row.has_extra(unsigned(lamp.kind)) && !is_implied && !value.empty()) {
           extras.add(extra_key(row), value);
         }
       }

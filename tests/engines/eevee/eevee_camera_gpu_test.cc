@@ -5,6 +5,9 @@
 #include "reference_light.hh"
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
 
 namespace gnomon::eevee {
 namespace {
@@ -80,6 +83,89 @@ TEST_F(CameraGpuTest, NegativeHalfSizesMirrorThePicture)
     // The reference takes other samples of edges.
     EXPECT_LE(different_count(reference, shadowed, false, false), 15 * edge_max) << sign.x << ' ' << sign.y;
   }
+}
+
+/** The share of the light in \a picture that is within \a radius_px of \a middle_px. */
+double share_within(const std::vector<glm::vec4> &picture, const glm::dvec2 &middle_px, double radius_px)
+{
+  double within = 0.0;
+  double sum = 0.0;
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x++) {
+      const double light = picture[std::size_t(y * size_px.x + x)].r;
+      sum += light;
+      within += glm::distance(glm::dvec2(x, y) + 0.5, middle_px) <= radius_px ? light : 0.0;
+    }
+  }
+  return within / sum;
+}
+
+TEST_F(CameraGpuTest, APointOutOfFocusIsADiskOfTheCircleOfConfusion)
+{
+  // A small emissive square at twice the distance in focus.
+  scene::Scene scene;
+  const auto white = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(white, [](scene::Material &material) { material.emissive = glm::vec3(100.0F); });
+  test::add_object(scene, test::add_square_mesh(scene, white), glm::scale(glm::dmat4(1.0), glm::dvec3(0.1)));
+  scene::PlacedCamera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
+  camera.focus_distance = 4.0F;
+  camera.aperture_radius = 2.0F;
+  Settings settings = offline_settings(256);
+  settings.emissive_point_count = 0;
+  test::Renderer renderer(*device, scene, size_px, settings);
+  const std::vector<glm::vec4> picture = renderer.picture(camera).pixels;
+  const double px_per_slope = 0.5 * size_px.y / std::tan(0.5 * double(camera.vertical_angle));
+  const double radius_px = px_per_slope * 2.0 * (1.0 / 4.0 - 1.0 / 8.0);
+  const glm::dvec2 middle = 0.5 * glm::dvec2(size_px);
+  for (const double part : {0.5, 0.75}) {
+    EXPECT_NEAR(share_within(picture, middle, part * radius_px), part * part, 0.04) << radius_px;
+  }
+  EXPECT_GT(share_within(picture, middle, radius_px + 1.5), 0.99);
+  double light = 0.0;
+  for (const glm::vec4 &pixel : picture) {
+    light += double(pixel.r);
+  }
+  camera.aperture_radius = 0.0F;
+  double sharp_light = 0.0;
+  for (const glm::vec4 &pixel : renderer.picture(camera).pixels) {
+    sharp_light += double(pixel.r);
+  }
+  // Each sample sees one to four centres of pixels in the square, so that 256 samples have an error of about 3 %.
+  EXPECT_NEAR(light, sharp_light, 0.05 * sharp_light);
+}
+
+TEST_F(CameraGpuTest, ALensWithShadowsAgreesWithTheReference)
+{
+  scene::Scene scene;
+  const auto box = test::add_box_mesh(scene, test::add_material(scene, {0.8F, 0.3F, 0.2F}));
+  const auto ground = test::add_square_mesh(scene, test::add_material(scene, {0.4F, 0.6F, 0.5F}));
+  test::add_object(scene, ground, glm::scale(glm::dmat4(1.0), glm::dvec3(8)));
+  for (const glm::dvec3 &at : {glm::dvec3(-0.8, 1.5, 0.4), glm::dvec3(0.3, -0.2, 0.4), glm::dvec3(0.9, -2.2, 0.4)}) {
+    test::add_object(scene, box, glm::scale(glm::translate(glm::dmat4(1.0), at), glm::dvec3(0.4)));
+  }
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0.4, 0.3, -1}, 3.0F);
+  test::add_lamp(scene, scene::LampKind::Point, {-1, -1, 2}, {0, 0, -1}, 4.0F);
+  scene::PlacedCamera camera = test::camera_at({0, -5, 2}, {0, 0, 0.3});
+  camera.focus_distance = 5.0F;
+  camera.aperture_radius = 0.15F;
+  camera.aperture_blades = 5;
+  camera.shift_x = 0.1F;
+  const reference::Tracer tracer(scene);
+  const auto truth = reference::direct_light(tracer, camera, size_px, {.sample_count = 256}).pixels;
+  const auto error = [&](int sample_count) {
+    test::Renderer renderer(*device, scene, size_px, offline_settings(sample_count));
+    const std::vector<glm::vec4> picture = renderer.picture(camera).pixels;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < truth.size(); i++) {
+      const glm::dvec3 difference(glm::vec3(picture[i] - truth[i]));
+      sum += glm::dot(difference, difference) / 3.0;
+    }
+    return std::sqrt(sum / double(truth.size()));
+  };
+  const double error_16 = error(16);
+  const double error_128 = error(128);
+  EXPECT_LT(error_128, 0.006);
+  EXPECT_LT(error_128, 0.5 * error_16);
 }
 
 }  // namespace
