@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/measure_bench_meshes.hh"
 
+#include "eevee_shaders.hh"
 #include "shadows/shadow_casters.hh"
 #include "shadows/shadow_cube.hh"
 #include "shadows/shadow_plan.hh"
