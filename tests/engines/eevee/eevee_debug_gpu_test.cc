@@ -5,6 +5,7 @@
 #include "gpu_device_fixture.hh"
 #include "shadows/shadows.hh"
 
+#include "eevee_esm_shared.h"
 #include "eevee_octahedral_shared.h"
 
 #include <gtest/gtest.h>

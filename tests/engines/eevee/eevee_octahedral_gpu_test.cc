@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_esm_scene.hh"
+#include "eevee_esm_shared.h"
 #include "gpu_device_fixture.hh"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shadows/shadow_octahedral_store.hh"
 
+#include "eevee_esm_shared.h"
 #include "gpu/gpu_testing.hh"
 
 #include <cmath>
