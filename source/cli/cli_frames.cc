@@ -145,10 +145,11 @@ void FrameSequence::choose_animations(scene::Scene &scene)
   scene.warnings.push_back(fmt::format("not played, as --animation names none: {}", message));
 }
 
-void FrameSequence::pose(scene::Scene &scene, int index) const
+void FrameSequence::pose(scene::Scene &scene, int index, double place) const
 {
   if (is_animated()) {
-    scene::pose(scene, animation_, seconds(index));
+    const double shutter_seconds = options_.shutter / options_.frames_per_second;
+    scene::pose(scene, animation_, seconds(index) + (place - 0.5) * shutter_seconds);
   }
 }
 

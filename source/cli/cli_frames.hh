@@ -19,6 +19,8 @@ struct FrameOptions {
   /** From one frame to the next, at least 1. */
   int step = 1;
   double frames_per_second = 24.0;
+  /** Part of the time of a frame for which the shutter is open. 0: no motion blur. */
+  double shutter = 0.0;
   /** Names of animations, or "all"; empty: all that animate other things than those before them. */
   std::vector<std::string> animations{};
   /** Whether to skip frames whose files are complete. */
@@ -79,8 +81,14 @@ class FrameSequence {
    * std::runtime_error that names the reason if there is nothing to play, or if named animations move the same thing
    */
   void choose_animations(scene::Scene &scene);
-  /** Poses \a scene at the frame's time. */
-  void pose(scene::Scene &scene, int index) const;
+  /** Whether each sample of a frame has another time. */
+  [[nodiscard]] bool has_shutter() const
+  {
+    return is_animated() && options_.shutter > 0.0;
+  }
+  /** Poses \a scene at the frame's time, or at a \a place from 0 to 1 in the time of its shutter, whose middle it is.
+   */
+  void pose(scene::Scene &scene, int index, double place = 0.5) const;
 
  private:
   FrameOptions options_;

@@ -101,7 +101,7 @@ struct SceneWork {
 };
 
 /** \return whether the last picture has all samples that were asked for */
-bool render_frames(const SceneWork &work, int picture, const scene::PlacedCamera &camera,
+bool render_frames(const SceneWork &work, int picture, scene::Scene &scene, const scene::PlacedCamera &camera,
                    eevee::SceneRenderer &renderer, const std::optional<draw::TargetTexture> &display)
 {
   const RenderOptions &options = work.options;
@@ -126,7 +126,13 @@ bool render_frames(const SceneWork &work, int picture, const scene::PlacedCamera
       return samples_drawn != sample_count && !is_stopped;
     };
     const trace::Span span("picture");
-    result.samples_drawn = renderer.draw(camera, {.progress = go_on, .seconds_max = options.seconds_max}, target);
+    const eevee::DrawLimits limits{.progress = go_on, .seconds_max = options.seconds_max};
+    const auto pose = [&](double place) {
+      work.frames.pose(scene, picture, place);
+      return find_camera(scene, options);
+    };
+    result.samples_drawn =
+        work.frames.has_shutter() ? renderer.draw_moving(pose, limits, target) : renderer.draw(camera, limits, target);
     renderer.viewport().device().finish();
     result.frame_seconds.push_back(seconds_since(start));
     result.frame_steps.push_back(renderer.inspect().take_step_times());
@@ -308,7 +314,7 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
       renderer.sync();
     }
     const SceneWork frame_work{options, frames, work.stops, work.progress, result, work.content};
-    const bool is_complete = render_frames(frame_work, i, camera, renderer, display);
+    const bool is_complete = render_frames(frame_work, i, scene, camera, renderer, display);
     if (!is_complete && !options.has_checkpoint) {
       return Status::Stopped;
     }

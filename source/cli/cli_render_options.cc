@@ -54,6 +54,7 @@ std::vector<Exclusion> exclusions()
            {"--tile", "--sample-range"},
            "--time-limit excludes --tile and --sample-range, whose parts need a known number of samples."},
           {{"--repeat"}, {"--frames"}, "--repeat excludes --frames."},
+          {{"--shutter"}, {"--aov", "--debug"}, "--shutter excludes --aov and --debug, which show one time."},
           {{"--debug"}, {"--aov"}, "--debug excludes --aov."}};
 }
 
@@ -343,6 +344,14 @@ static void add_animation_options(CLI::App &command, RenderOptions &options)
       ->needs(frames)
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e6));
+  command
+      .add_option(
+          "--shutter", options.frames.shutter,
+          "Part of the time of a frame for which the shutter is open, in the middle of which the frame is: motion "
+          "blur")
+      ->needs(frames)
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 100.0));
   command
       .add_option("--animation", options.frames.animations,
                   "Name of an animation, may be given several times; or all (default: those that animate other things "

@@ -51,7 +51,7 @@ class Engine {
   virtual void cache_init(Viewport &viewport) = 0;
   /** Add or update \a object. \a objects holds its matrix, volume and value. */
   virtual void cache_populate(Viewport &viewport, const ObjectBuffer &objects, ObjectIndex object) = 0;
-  /** Finish the sync, after all objects are known. Calls Viewport::restart if the picture changes. */
+  /** Finish the sync, after all objects are known. Calls Viewport::scene_changed if the picture changes. */
   virtual void cache_finish(Viewport &viewport) = 0;
   /**
    * If samples are missing and Viewport::is_writing() is false, draw the part Viewport::part() of sample number

@@ -143,8 +143,9 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
   check(target, size_px_);
   check_region(target);
   target_ = target;
-  if (!is_of(engines, view)) {
-    view_ = view;
+  const bool is_restarted = !is_of(engines, is_moving_ ? view_ : view);
+  view_ = view;
+  if (is_restarted) {
     drawn_by_.clear();
     std::ranges::transform(engines, std::back_inserter(drawn_by_), &Engine::id);
     restart();

@@ -43,8 +43,8 @@ struct SamplePart {
  *
  * Each draw adds one sample to the picture until the engines have drawn all their samples. The next draw starts the
  * picture again with its first sample if:
- * - the view, the size or the engines change;
- * - an engine finds a change during sync();
+ * - the size or the engines change;
+ * - the view changes, or an engine finds a change during sync(), unless the picture is_moving();
  * - a packet with samples of the picture was lost;
  * - the feedback of the device changes the picture;
  * - restart() was called, or set_region() with another region.
@@ -154,6 +154,25 @@ class Viewport {
     samples_drawn_ = 0;
     next_row_.reset();
     restart_count_++;
+  }
+  /** During sync: an engine found a change of the picture. */
+  void scene_changed()
+  {
+    if (!is_moving_) {
+      restart();
+    }
+  }
+  /**
+   * Whether each sample may show other objects from another view (motion blur): neither starts the picture again, and
+   * nothing is fitted to depths of earlier samples. false at first.
+   */
+  [[nodiscard]] bool is_moving() const
+  {
+    return is_moving_;
+  }
+  void set_moving(bool is_moving)
+  {
+    is_moving_ = is_moving;
   }
   /** Whether the samples are of \a view, by \a engines. */
   [[nodiscard]] bool is_of(std::span<Engine *const> engines, const View &view) const;
@@ -281,6 +300,7 @@ class Viewport {
   Target target_;
   int samples_drawn_ = 0;
   std::uint64_t restart_count_ = 0;
+  bool is_moving_ = false;
   int rows_max_ = no_rows_max;
   int setup_max_ = no_setup_max;
   int setup_count_ = 0;

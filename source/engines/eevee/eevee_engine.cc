@@ -125,7 +125,7 @@ void Engine::cache_finish(draw::Viewport &viewport)
   follow_lamps(data);
   const PictureKey picture = picture_key();
   if (data.synced_picture != picture) {
-    viewport.restart();
+    viewport.scene_changed();
     data.depth.feedback().forget();
     data.synced_picture = picture;
   }
@@ -199,7 +199,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
       has_background(settings_, scene_) || std::ranges::any_of(data.surfaces.objects(), is_visible);
   data.is_seen |= is_sample_seen;
   data.is_transmission_seen = false;
-  const bool awaits_depths = data.is_seen && data.depth.awaits(view);
+  const bool awaits_depths = data.is_seen && !viewport.is_moving() && data.depth.awaits(view);
   const bool is_for_feedback = is_sample_seen && awaits_depths && viewport.draws_until_final();
   if (is_sample_seen) {
     data.materials.update(scene_, data.surfaces.objects());

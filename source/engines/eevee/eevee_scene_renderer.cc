@@ -2,6 +2,7 @@
 #include "eevee_scene_renderer.hh"
 
 #include "eevee_camera.hh"
+#include "eevee_sequence_shared.h"
 
 #include "gpu_read.hh"
 #include "trace.hh"
@@ -85,6 +86,37 @@ bool SceneRenderer::draw_within(double budget_seconds, const scene::PlacedCamera
 
 int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &limits, const draw::Target &target)
 {
+  return draw_all([&](int) { return camera; }, limits, target);
+}
+
+int SceneRenderer::draw_moving(const Pose &pose, const DrawLimits &limits, const draw::Target &target)
+{
+  constexpr std::uint32_t stream = 0x73687574;
+  struct Moving {
+    draw::Viewport &viewport;
+    explicit Moving(draw::Viewport &viewport_) : viewport(viewport_)
+    {
+      viewport.set_moving(true);
+    }
+    ~Moving()
+    {
+      viewport.set_moving(false);
+    }
+  };
+  const Moving moving(viewport_);
+  const auto camera_of = [&](int index) {
+    const auto number = std::uint32_t(settings_.sample_first + index);
+    const std::uint32_t place = shared::scrambled_van_der_corput(number, settings_.seed + stream);
+    scene::PlacedCamera camera = pose(double(shared::to_unit(place)));
+    sync();
+    return camera;
+  };
+  return draw_all(camera_of, limits, target);
+}
+
+int SceneRenderer::draw_all(const std::function<scene::PlacedCamera(int index)> &camera_of, const DrawLimits &limits,
+                            const draw::Target &target)
+{
   using Seconds = std::chrono::duration<double>;
   const bool is_timed = std::isfinite(limits.seconds_max);
   if (settings_.sample_count == 0 && !limits.progress && !is_timed) {
@@ -95,6 +127,7 @@ int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &lim
   double seconds = 0.0;
   for (int i = 1;; i++) {
     const bool is_last = i == settings_.drawn_sample_count();
+    const scene::PlacedCamera camera = camera_of(i - 1);
     draw_sample(camera, is_last ? target : draw::Target());
     bool is_ended = limits.progress && !limits.progress(i);
     if (is_last) {

@@ -10,6 +10,12 @@
 
 namespace gnomon::eevee {
 
+/**
+ * Poses a moving scene for one sample, and returns the camera of that time. \a place: of the sample in the time for
+ * which the shutter is open, from 0 to below 1.
+ */
+using Pose = std::function<scene::PlacedCamera(double place)>;
+
 /** Limits that end a picture before it has all its samples. It gets at least one sample, whatever the limits are. */
 struct DrawLimits {
   /** Called after each sample with the number of samples drawn. Returns false to end the picture. May be empty. */
@@ -96,6 +102,11 @@ class SceneRenderer {
    */
   int draw(const scene::PlacedCamera &camera, const DrawLimits &limits = {}, const draw::Target &target = {});
   /**
+   * As draw, with motion blur: \a pose is called before each sample, may edit the scene, and gives the camera. Syncs
+   * before each sample. The samples are spread evenly over the time of the shutter.
+   */
+  int draw_moving(const Pose &pose, const DrawLimits &limits = {}, const draw::Target &target = {});
+  /**
    * The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. Pixels outside
    * of draw::Viewport::region are undefined.
    * \throws gpu::Error if no sample is drawn since the picture started; a preview of draw_within is no sample
@@ -128,6 +139,9 @@ class SceneRenderer {
  private:
   /** \throws gpu::Error if a sync is missing */
   void check_synced() const;
+  /** \a camera_of: the camera of a sample, whose number is counted from 0. */
+  int draw_all(const std::function<scene::PlacedCamera(int index)> &camera_of, const DrawLimits &limits,
+               const draw::Target &target);
   /** Move the origin of the render scene near to \a camera, if it is far away. */
   void follow(const scene::PlacedCamera &camera);
 

@@ -96,7 +96,7 @@ void Engine::cache_finish(draw::Viewport &viewport)
   const PictureKey picture = picture_key(scene_, settings_revision_);
   if (data.synced_picture != picture) {
     data.synced_picture = picture;
-    viewport.restart();
+    viewport.scene_changed();
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of cameras, on the driver.
+#include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "reference_light.hh"
@@ -166,6 +167,91 @@ TEST_F(CameraGpuTest, ALensWithShadowsAgreesWithTheReference)
   const double error_128 = error(128);
   EXPECT_LT(error_128, 0.006);
   EXPECT_LT(error_128, 0.5 * error_16);
+}
+
+TEST_F(CameraGpuTest, AMovingBarCoversPixelsForThePartOfTheTimeThatItIsThere)
+{
+  scene::Scene scene;
+  const auto white = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(white, [](scene::Material &material) { material.emissive = glm::vec3(1.0F); });
+  const auto bar = test::add_square_mesh(scene, white);
+  test::add_object(scene, bar, glm::scale(glm::dmat4(1.0), glm::dvec3(4)));
+  scene::PlacedCamera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = 0.5F * float(size_px.x);
+  camera.half_height = 0.5F * float(size_px.y);
+  SceneRenderer renderer(*device, scene, size_px, offline_settings(64));
+  const auto pose = [&](double place) {
+    scene.set_transform(
+        test::handle_at(scene.nodes(), 0),
+        glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(24.0 * place - 12.0, 0, 0)), glm::dvec3(4)));
+    return camera;
+  };
+  ASSERT_EQ(renderer.draw_moving(pose), 64);
+  const std::vector<glm::vec4> picture = renderer.read_picture();
+  for (int x = 0; x < size_px.x; x++) {
+    const double from_middle = std::abs(double(x) + 0.5 - 0.5 * size_px.x);
+    const double covered = std::clamp((16.0 - from_middle) / 24.0, 0.0, 1.0 / 3.0);
+    EXPECT_NEAR(picture[std::size_t(size_px.y / 2 * size_px.x + x)].r, covered, 0.03) << x;
+  }
+}
+
+TEST_F(CameraGpuTest, AMovingPictureIsTheMeanOfItsSamples)
+{
+  scene::Scene scene;
+  const auto box = test::add_box_mesh(scene, test::add_material(scene, {0.8F, 0.3F, 0.2F}));
+  const auto ground = test::add_square_mesh(scene, test::add_material(scene, {0.4F, 0.6F, 0.5F}));
+  test::add_object(scene, ground, glm::scale(glm::dmat4(1.0), glm::dvec3(8)));
+  test::add_object(scene, box, glm::scale(glm::dmat4(1.0), glm::dvec3(0.4)));
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0.4, 0.3, -1}, 3.0F);
+  test::add_lamp(scene, scene::LampKind::Point, {-1, -1, 2}, {0, 0, -1}, 4.0F);
+  const auto pose = [&](double place) {
+    scene.set_transform(
+        test::handle_at(scene.nodes(), 1),
+        glm::scale(glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(place - 0.5, 0, 0.6)), place, {0, 0.6, 0.8}),
+                   glm::dvec3(0.4)));
+    return test::camera_at(glm::vec3(float(place), -5, 2), {0, 0, 0.3F});
+  };
+  constexpr int count = 8;
+  std::vector<double> places;
+  SceneRenderer renderer(*device, scene, size_px, offline_settings(count));
+  renderer.draw_moving([&](double place) {
+    places.push_back(place);
+    return pose(place);
+  });
+  const std::vector<glm::vec4> picture = renderer.read_picture();
+  std::vector<glm::dvec4> mean(picture.size(), glm::dvec4(0.0));
+  for (int i = 0; i < count; i++) {
+    Settings settings = offline_settings(count);
+    settings.sample_first = i;
+    settings.sample_end = i + 1;
+    const scene::PlacedCamera camera = pose(places[std::size_t(i)]);
+    SceneRenderer fresh(*device, scene, size_px, settings);
+    fresh.sync();
+    fresh.draw(camera);
+    const std::vector<glm::vec4> part = fresh.read_picture();
+    const double share = fresh.engine().sample_share(fresh.viewport());
+    for (std::size_t j = 0; j < part.size(); j++) {
+      mean[j] += share * glm::dvec4(part[j]);
+    }
+  }
+  double largest = 0.0;
+  for (std::size_t j = 0; j < picture.size(); j++) {
+    largest = std::max(largest, glm::length(mean[j] - glm::dvec4(picture[j])));
+  }
+  EXPECT_LT(largest, 1e-5);
+  std::ranges::sort(places);
+  for (int i = 0; i < count; i++) {
+    EXPECT_GE(places[std::size_t(i)], double(i) / count);
+    EXPECT_LT(places[std::size_t(i)], double(i + 1) / count);
+  }
+
+  // What stands still is drawn as without a shutter, and the next picture begins anew.
+  const scene::PlacedCamera still = pose(0.5);
+  renderer.draw_moving([&](double) { return still; });
+  const std::vector<glm::vec4> standing = renderer.read_picture();
+  renderer.draw(still);
+  EXPECT_EQ(standing, renderer.read_picture());
 }
 
 }  // namespace
