@@ -495,7 +495,7 @@ class Options(ExportTest):
         add_box()
         self.scene.render.use_motion_blur = self.scene.use_nodes = True
         report = File().report
-        self.assertIn("scene: motion blur is not drawn", report)
+        self.assertIn("scene: motion blur is drawn in frames alone: --frames A-B --shutter 0.5", report)
         self.assertIn("scene: compositing nodes are not run", report)
 
 

@@ -135,7 +135,7 @@ class Export:
     def report_scene(self):
         scene, report = self.scene, self.report
         if scene.render.use_motion_blur:
-            report.add('scene', "motion blur is not drawn")
+            report.add('scene', f"motion blur is drawn in frames alone: --frames A-B --shutter {scene.render.motion_blur_shutter:.6g}")
         if scene.use_nodes:
             report.add('scene', "compositing nodes are not run")
         animated = [scene.world, *(thing.data for thing in scene.objects if thing.type in ('LIGHT', 'CAMERA'))]
