@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Debug views compared with known distances.
 #include "eevee_debug.hh"
+#include "eevee_shaders.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "shadows/shadows.hh"
 
+#include "eevee_esm_shared.h"
 #include "eevee_octahedral_shared.h"
 
 #include <gtest/gtest.h>
