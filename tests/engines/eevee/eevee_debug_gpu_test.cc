@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Debug views compared with known distances.
 #include "eevee_debug.hh"
+#include "eevee_shaders.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "shadows/shadows.hh"
