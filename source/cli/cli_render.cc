@@ -400,9 +400,10 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   renderer.sync();
   renderer.viewport().set_region(options.region());
   const eevee::Inspection inspection = renderer.inspect();
-  result.report = inspection.report();
-  print_messages("warning", result.report.warnings);
-  print_messages("limit", result.report.limits);
+  const eevee::Report before = inspection.report();
+  print_messages("warning", before.warnings);
+  print_messages("limit", before.limits);
+  result.report = before;
   if (options.debug_view.kind == DebugView::Kind::Cascades && !inspection.tinted_sun()) {
     throw std::runtime_error(fmt::format("{}: no sun has a shadow, so there are no cascades", scene.path));
   }
@@ -412,12 +413,11 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   const Status status =
       render_sequence({options, frames, stops, progress, result, content}, aov, scene, camera, renderer);
   // Surface functions are compiled by the first picture.
-  eevee::Report drawn = inspection.report();
-  print_new_messages("warning", drawn.warnings, result.report.warnings);
-  print_new_messages("limit", drawn.limits, result.report.limits);
   if (aov.empty()) {
-    result.report = std::move(drawn);
+    result.report = inspection.report();
   }
+  print_new_messages("warning", result.report.warnings, before.warnings);
+  print_new_messages("limit", result.report.limits, before.limits);
   if (!options.has_picture()) {
     print_message("gnomon: the null backend draws nothing: no picture is written\n");
   }

@@ -338,11 +338,14 @@ TEST_F(CliRenderTest, FaultsThatThePictureFindsAreNamed)
   const std::string before = R"({"doubleSided":true})";
   write("s.gltf", gltf.replace(gltf.find(before), before.size(),
                                R"({"doubleSided":true,"extras":{"gnomon_surface":"s.surface.glsl"}})"));
-  const Finished finished = run("render s.gltf -o o.exr --size 16x16 --samples 1");
-  EXPECT_EQ(finished.status, 0);
-  EXPECT_NE(finished.err.find("its surface function is broken, and magenta is drawn instead: s.surface.glsl:3"),
-            std::string::npos)
-      << finished.err;
+  for (const char *layers : {"", " --aov depth", " --aov albedo,emission"}) {
+    const Finished finished = run(std::string("render s.gltf -o o.exr --size 16x16 --samples 1") + layers);
+    EXPECT_EQ(finished.status, 0) << layers;
+    const std::string warning = "its surface function is broken, and magenta is drawn instead: s.surface.glsl:3";
+    const std::size_t found = finished.err.find(warning);
+    EXPECT_NE(found, std::string::npos) << layers << finished.err;
+    EXPECT_EQ(finished.err.find(warning, found + 1), std::string::npos) << layers << finished.err;
+  }
 }
 
 TEST_F(CliRenderTest, OnlyBelowLeavesOutFilesElsewhere)
