@@ -2,7 +2,7 @@
 #include "cli.hh"
 
 #include "cli_exr_part.hh"
-#include "cli_roles.hh"
+#include "cli_output.hh"
 #include "cli_work_plan.hh"
 
 #include "scene_parallel.hh"
@@ -252,11 +252,12 @@ Status merge(const MergeOptions &options)
   if (std::filesystem::path(options.output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
   }
-  Roles roles;
+  output::Roles roles;
   for (const std::string &part : options.parts) {
     roles.add_input(part, "the part");
   }
   roles.add_output(options.output, "-o");
+  keep_text_from(roles);
   const Status status = write_merged(options.output, merge_parts(options.parts));
   if (status == Status::Done) {
     fmt::print("{}\n", std::filesystem::absolute(options.output).lexically_normal().string());

@@ -12,7 +12,6 @@
 #include "cli_render_options.hh"
 #include "cli_render_output.hh"
 #include "cli_render_report.hh"
-#include "cli_roles.hh"
 #include "cli_stop.hh"
 #include "cli_time.hh"
 #include "cli_trace.hh"
@@ -41,7 +40,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /** Adds the outputs, and the inputs that are known before the scene is read. */
-void add_files(const RenderOptions &options, const FrameSequence &frames, Roles &roles)
+void add_files(const RenderOptions &options, const FrameSequence &frames, output::Roles &roles)
 {
   roles.add_input(options.scene, "the scene");
   if (!options.choice.report_folder.empty()) {
@@ -357,7 +356,7 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
-Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, Roles &roles,
+Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, output::Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
   const glm::ivec2 size_px = options.size_px();
@@ -476,12 +475,13 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
   const Clock::time_point start = Clock::now();
   const StopRequests stops(options.stop_seconds);
   const std::vector<RenderOptions> scenes = options_of_scenes(options);
-  Roles roles;
+  output::Roles roles;
   roles.add_output(options.trace, "--trace");
   for (const RenderOptions &one : scenes) {
     add_files(one, FrameSequence(one.frames, one.output), roles);
     static_cast<void>(Aov(one.aov));
   }
+  keep_text_from(roles);
   // The import and the device are made at the same time. If both fail, the scene's error is the first.
   std::future<ImportedScene> import = start_import(scenes.front(), stops);
   std::unique_ptr<gpu::Device> device;
