@@ -284,6 +284,9 @@ TEST_F(CliRenderTest, PartsWithOtherSettingsAreNotMerged)
   write("metal.gltf", test::variants_gltf);
   const std::string render = "render metal.gltf --size 16x16 --samples 2 ";
   ASSERT_EQ(run(render + "-o low.exr --tile 1/2 --variant red --light-threshold 0").status, 0);
+  ASSERT_EQ(run(render + "-o high.exr --tile 2/2 --variant blue --light-threshold 0").status, 0);
+  const std::string named = run("merge low.exr high.exr -o mixed.exr").err;
+  EXPECT_NE(named.find("gnomon:settings is '--variant blue', not '--variant red'\n"), std::string::npos) << named;
   for (const std::string other :
        {"--variant blue", "", "--variant red --texture-size-max 64", "--variant red --world 1,1,1",
         "--variant red --shadow none", "--variant red --light-threshold 0.5", "--variant red --emissive-points 3",
