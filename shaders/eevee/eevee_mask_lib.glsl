@@ -19,8 +19,9 @@ float mask_threshold()
 /**
  * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is the same all around it, the pixel is covered as often as
  * the texels in it: levels above 0 of a mask's texture store the covered share. At the edge of a shape that is larger than the pixel, a
- * look-up of level 0 has half of the error, and the right mean. A mask is the same all around if its shares over 1 and 4 pixels are alike,
- * or if those over 4, 8 and 16 pixels are equal: a weight that varied with the mask's own pattern within a pixel would change the mean.
+ * look-up of level 0 has half of the error, and the right mean. A mask is the same all around if its shares over 1 pixel, over 4 and over
+ * the distance between samples are alike, or if those over 4, 8 and 16 pixels are equal: a weight that varied with the mask's own pattern
+ * within a pixel would change the mean.
  */
 bool is_pixel_cut_out(float mask_cutoff)
 {
@@ -48,7 +49,8 @@ bool is_pixel_cut_out(float mask_cutoff)
   float share_around = textureLod(base_color_texture, surface_uv, lod.y + 2.0).a;
   vec2 shares_farther = vec2(textureLod(base_color_texture, surface_uv, lod.y + 3.0).a,
                              textureLod(base_color_texture, surface_uv, lod.y + 4.0).a);
-  float is_fine = min(level - 1.0, 1.0) * (1.0 - 16.0 * abs(share_of_pixel - share_around));
+  float change = max(abs(share_of_pixel - share_around), abs(share - share_around));
+  float is_fine = clamp(level - 1.0, 0.0, 1.0) * (1.0 - 24.0 * change);
   // A pattern of several pixels that repeats: its levels differ by their rounding to 1/255 alone. The last levels of a texture are equal for
   // any pattern.
   bool has_farther = lod.y + 5.0 <= float(textureQueryLevels(base_color_texture));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
-#include "cli_roles.hh"
 
 #include "cli_bench.hh"
 #include "cli_device.hh"
+#include "cli_output.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -248,12 +248,13 @@ void bench_start(const BenchOptions &options)
 /** Before minutes of measuring. \throws output::Error where --json cannot be written, or would replace a scene */
 void check_files(const BenchOptions &options)
 {
-  Roles roles;
+  output::Roles roles;
   roles.add_input(options.scene, "the scene");
   for (const std::string &scene : options.scenes) {
     roles.add_input(scene, "the scene");
   }
   roles.add_output(options.json, "--json");
+  keep_text_from(roles);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli_bench.hh"
 #include "cli_device.hh"
-#include "cli_roles.hh"
 
 #include "measure_frames.hh"
+#include "output_roles.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -37,7 +37,7 @@ void print_budget(const measure::BudgetTimes &times, nlohmann::json &json)
 nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
   scene::Scene scene = import_scene(path);
-  Roles roles;
+  output::Roles roles;
   add_inputs(roles, scene, options.world);
   roles.add_output(options.json, "--json");
   light_by_world(scene, scene.placed_cameras().front(), options.world);

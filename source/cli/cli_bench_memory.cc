@@ -2,9 +2,9 @@
 #include "cli_bench.hh"
 #include "cli_device.hh"
 #include "cli_render_options.hh"
-#include "cli_roles.hh"
 
 #include "eevee_scene_renderer.hh"
+#include "output_roles.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -39,7 +39,7 @@ DeviceBytes device_bytes(gpu::Device &device, const scene::Scene &scene, const R
 nlohmann::json print_memory(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
   scene::Scene scene = import_scene(path);
-  Roles roles;
+  output::Roles roles;
   add_inputs(roles, scene, options.world);
   roles.add_output(options.json, "--json");
   light_by_world(scene, scene.placed_cameras().front(), options.world);

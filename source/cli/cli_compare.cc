@@ -3,7 +3,6 @@
 
 #include "cli_output.hh"
 #include "cli_picture.hh"
-#include "cli_roles.hh"
 
 #include "measure_image_error.hh"
 
@@ -72,11 +71,12 @@ void write_errors(const CompareOptions &options, const measure::ImageError &erro
 
 Status compare(const CompareOptions &options)
 {
-  Roles roles;
+  output::Roles roles;
   roles.add_input(options.picture, "the picture");
   roles.add_input(options.reference, "the reference");
   roles.add_output(options.json, "--json");
   roles.add_output(options.difference, "--difference");
+  keep_text_from(roles);
   const Picture picture = read_picture(options.picture);
   const Picture reference = read_picture(options.reference);
   if (picture.size_px != reference.size_px) {

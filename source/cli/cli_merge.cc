@@ -2,7 +2,7 @@
 #include "cli.hh"
 
 #include "cli_exr_part.hh"
-#include "cli_roles.hh"
+#include "cli_output.hh"
 #include "cli_work_plan.hh"
 
 #include "scene_parallel.hh"
@@ -42,11 +42,32 @@ bool is_of_part(const std::string &name)
   return name == share_metadata || name == range_metadata || name == "gnomon:device" || name == plan_metadata;
 }
 
+/** Leaves out the options that two lists of options begin with and end with. */
+void drop_shared_options(std::string &a, std::string &b)
+{
+  constexpr std::string_view option = " --";
+  const auto in_a = std::ranges::mismatch(a, b).in1;
+  const auto shared_count = std::size_t(in_a - a.begin());
+  const std::size_t begin = shared_count == 0 ? a.npos : a.rfind(option, shared_count - 1);
+  if (begin != a.npos) {
+    a.erase(0, begin + 1);
+    b.erase(0, begin + 1);
+  }
+  const auto from_end = std::mismatch(a.rbegin(), a.rend(), b.rbegin(), b.rend());
+  const auto count = std::size_t(from_end.first - a.rbegin());
+  const std::size_t end = a.find(option, a.size() - count);
+  if (end != a.npos) {
+    b.erase(b.size() - (a.size() - end));
+    a.erase(end);
+  }
+}
+
 /** \throws std::runtime_error naming \a path if it is not a part of the same picture as \a first */
 void check_same_picture(const std::string &path, const ExrPart &part, const std::string &first_path,
                         const ExrPart &first)
 {
-  const auto fail = [&](const std::string &what, const std::string &value, const std::string &first_value) {
+  const auto fail = [&](const std::string &what, std::string value, std::string first_value) {
+    drop_shared_options(value, first_value);
     throw std::runtime_error(fmt::format("{}: not a part of the same picture as {}: {} is '{}', not '{}'", path,
                                          first_path, what, value, first_value));
   };
@@ -70,7 +91,7 @@ void check_same_picture(const std::string &path, const ExrPart &part, const std:
       }
     }
   }
-  for (const std::string &name : names) {
+  const auto check = [&](const std::string &name) {
     // The folder of the scene may differ between machines.
     const auto value_of = [&](const ExrPart &one) {
       const std::string value = metadata_value(one.metadata, name);
@@ -79,7 +100,12 @@ void check_same_picture(const std::string &path, const ExrPart &part, const std:
     if (value_of(part) != value_of(first)) {
       fail(name, value_of(part), value_of(first));
     }
-  }
+  };
+  // A setting says more than the fingerprint of what it changes.
+  const std::string content = "gnomon:content";
+  names.erase(content);
+  std::ranges::for_each(names, check);
+  check(content);
 }
 
 /** Share of the picture's samples that \a part contains, in (0, 1]. */
@@ -252,11 +278,12 @@ Status merge(const MergeOptions &options)
   if (std::filesystem::path(options.output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
   }
-  Roles roles;
+  output::Roles roles;
   for (const std::string &part : options.parts) {
     roles.add_input(part, "the part");
   }
   roles.add_output(options.output, "-o");
+  keep_text_from(roles);
   const Status status = write_merged(options.output, merge_parts(options.parts));
   if (status == Status::Done) {
     fmt::print("{}\n", std::filesystem::absolute(options.output).lexically_normal().string());

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli_output.hh"
 
-#include "output_file.hh"
-
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
 
 namespace gnomon::cli {
 
@@ -29,6 +28,14 @@ void write_json(const std::filesystem::path &path, const nlohmann::json &json, i
 {
   if (!path.empty()) {
     output::write_file(path, json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  }
+}
+
+void keep_text_from(const output::Roles &files)
+{
+  if (files.has_output("/dev/stdout")) {
+    // The GNU C Library documents that it can be set.
+    stdout = stderr;
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "output_roles.hh"
+
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <nlohmann/json_fwd.hpp>
@@ -34,5 +36,11 @@ struct NonFinite {
  * U+FFFD. \a indent: spaces
  */
 void write_json(const std::filesystem::path &path, const nlohmann::json &json, int indent = 2);
+
+/**
+ * If an output of \a files is the pipe or file of standard output, as with `--json /dev/stdout`, what is printed to
+ * stdout goes to stderr from now on.
+ */
+void keep_text_from(const output::Roles &files);
 
 }  // namespace gnomon::cli

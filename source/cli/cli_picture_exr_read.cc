@@ -65,7 +65,8 @@ std::vector<ExrLayer> layers_of(const Imf::Header &header, int part, bool is_onl
     if (has("R") && has("G") && has("B")) {
       layer.channels = {channels.at("R"), channels.at("G"), channels.at("B")};
     }
-    else if (has("Y")) {
+    // Not the Y of a vector X, Y and Z.
+    else if (has("Y") && !has("X")) {
       layer.channels.fill(channels.at("Y"));
       layer.has_chroma = has("RY") && has("BY");
     }

@@ -4,9 +4,9 @@
 #include "cli_device.hh"
 #include "cli_frames.hh"
 #include "cli_origin.hh"
+#include "cli_output.hh"
 #include "cli_render.hh"
 #include "cli_render_options.hh"
-#include "cli_roles.hh"
 #include "cli_work_plan.hh"
 
 #include <fmt/format.h>
@@ -82,11 +82,12 @@ Status plan(const PlanOptions &options, const CLI::App &command)
   if (!options.render.has_picture()) {
     throw UsageError("plan: the parts draw pictures, and --backend null draws none");
   }
-  Roles roles;
+  output::Roles roles;
   for (const std::string &scene : options.render.scenes) {
     roles.add_input(scene, "the scene");
   }
   roles.add_output(options.plan, "-o");
+  keep_text_from(roles);
   WorkPlan plan{
       .program = program_name(), .arguments = arguments_of(command), .frame_step = options.render.frames.step};
   plan.folder = fs::relative(fs::current_path(), fs::absolute(options.plan).parent_path()).string();

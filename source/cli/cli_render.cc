@@ -12,7 +12,6 @@
 #include "cli_render_options.hh"
 #include "cli_render_output.hh"
 #include "cli_render_report.hh"
-#include "cli_roles.hh"
 #include "cli_stop.hh"
 #include "cli_time.hh"
 #include "cli_trace.hh"
@@ -41,7 +40,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /** Adds the outputs, and the inputs that are known before the scene is read. */
-void add_files(const RenderOptions &options, const FrameSequence &frames, Roles &roles)
+void add_files(const RenderOptions &options, const FrameSequence &frames, output::Roles &roles)
 {
   roles.add_input(options.scene, "the scene");
   if (!options.choice.report_folder.empty()) {
@@ -405,7 +404,7 @@ void print_result(const RenderOptions &options, const RenderResult &result, cons
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
-Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, Roles &roles,
+Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, output::Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
   const glm::ivec2 size_px = options.size_px();
@@ -439,9 +438,10 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   renderer.sync();
   renderer.viewport().set_region(options.region());
   const eevee::Inspection inspection = renderer.inspect();
-  result.report = inspection.report();
-  print_messages("warning", result.report.warnings);
-  print_messages("limit", result.report.limits);
+  const eevee::Report before = inspection.report();
+  print_messages("warning", before.warnings);
+  print_messages("limit", before.limits);
+  result.report = before;
   if (options.debug_view.kind == DebugView::Kind::Cascades && !inspection.tinted_sun()) {
     throw std::runtime_error(fmt::format("{}: no sun has a shadow, so there are no cascades", scene.path));
   }
@@ -451,12 +451,11 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   const Status status =
       render_sequence({options, frames, stops, progress, result, content}, aov, scene, camera, renderer);
   // Surface functions are compiled by the first picture.
-  eevee::Report drawn = inspection.report();
-  print_new_messages("warning", drawn.warnings, result.report.warnings);
-  print_new_messages("limit", drawn.limits, result.report.limits);
   if (aov.empty()) {
-    result.report = std::move(drawn);
+    result.report = inspection.report();
   }
+  print_new_messages("warning", result.report.warnings, before.warnings);
+  print_new_messages("limit", result.report.limits, before.limits);
   if (!options.has_picture()) {
     print_message("gnomon: the null backend draws nothing: no picture is written\n");
   }
@@ -521,12 +520,13 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
   const Clock::time_point start = Clock::now();
   const StopRequests stops(options.stop_seconds);
   const std::vector<RenderOptions> scenes = options_of_scenes(options);
-  Roles roles;
+  output::Roles roles;
   roles.add_output(options.trace, "--trace");
   for (const RenderOptions &one : scenes) {
     add_files(one, FrameSequence(one.frames, one.output), roles);
     static_cast<void>(Aov(one.aov));
   }
+  keep_text_from(roles);
   std::future<ImportedScene> import = start_import(scenes.front(), stops);
   const std::unique_ptr<gpu::Device> device = create_device_during(import, options.backend);
   result.device = device->description();

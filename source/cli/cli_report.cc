@@ -7,7 +7,6 @@
 #include "cli_output.hh"
 #include "cli_picture.hh"
 #include "cli_render_options.hh"
-#include "cli_roles.hh"
 #include "cli_time.hh"
 #include "cli_world.hh"
 
@@ -164,7 +163,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   run_.has_multiscatter = changed(eevee::Settings(), options.changes).has_multiscatter;
   run_.size_px = {options.size[0], options.size[1]};
   const std::vector<measure::Technique> techniques = wanted_techniques(options.techniques);
-  Roles roles;
+  output::Roles roles;
   for (const std::string &path : options.scenes) {
     const std::string name = fs::path(path).stem().string();
     if (std::ranges::find(run_.scenes, name, &measure::SceneReport::name) != run_.scenes.end()) {
@@ -197,6 +196,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
       }
     }
   }
+  keep_text_from(roles);
   resume();
 }
 

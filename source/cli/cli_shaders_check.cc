@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shaders.hh"
 
-#include "cli_roles.hh"
+#include "cli_output.hh"
 #include "cli_shader_jobs.hh"
 #include "cli_shader_manifest.hh"
 #include "cli_shader_programs.hh"
@@ -277,7 +277,7 @@ fs::path output_path(const CheckArguments &arguments, const std::string &file)
 /** \throws output::Conflict if an output would replace an input or another output */
 void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
 {
-  Roles roles;
+  output::Roles roles;
   roles.add_input(arguments.manifest, "--manifest");
   for (const ShaderManifest::Entry &entry : entries) {
     for (const shader_check::Program::File &file : entry.program.files) {
@@ -295,6 +295,7 @@ void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const Ch
     }
   }
   roles.add_output(arguments.depfile, "-MF");
+  keep_text_from(roles);
 }
 
 /** Writes the SPIR-V of \a checks: of one file to the path of -o, of more into that folder. */

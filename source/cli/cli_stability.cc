@@ -4,7 +4,6 @@
 #include "cli_device.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
-#include "cli_roles.hh"
 
 #include "measure_page.hh"
 #include "measure_report.hh"
@@ -353,10 +352,11 @@ Status stability(const StabilityOptions &options)
   const std::string driver = device ? device->description() : "no device";
   fs::create_directories(options.folder);
   const fs::path folder(options.folder);
-  Roles roles;
+  output::Roles roles;
   for (const char *name : {"stability.csv", "stability.json", "index.html"}) {
     roles.add_output(folder / name, "-o");
   }
+  keep_text_from(roles);
   const std::vector<CaseResult> results = run_all(std::move(cases));
   const Origin where = origin();
   output::write_file(folder / "stability.csv", to_csv(results));

@@ -124,7 +124,8 @@ RadianceDecoder::RadianceDecoder(std::span<const unsigned char> file)
   std::string_view line = take_line(text);
   const Axis outer = take_axis(line);
   const Axis inner = take_axis(line);
-  if (outer.length == 0 || inner.length == 0 || outer.name == inner.name || !line.empty()) {
+  if (outer.length == 0 || inner.length == 0 || outer.name == inner.name ||
+      line.find_first_not_of(" \t") != line.npos) {
     throw Error("does not state its size, for example as -Y HEIGHT +X WIDTH");
   }
   has_columns_ = outer.name == 'X';

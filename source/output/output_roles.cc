@@ -40,4 +40,11 @@ void Roles::add_output(const std::filesystem::path &path, const std::string &use
   }
 }
 
+bool Roles::has_output(const std::filesystem::path &path) const
+{
+  const std::optional<FileId> id = file_id(path);
+  const auto role = id ? roles_.find(*id) : roles_.end();
+  return role != roles_.end() && role->second.is_output;
+}
+
 }  // namespace gnomon::output

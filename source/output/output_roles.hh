@@ -28,6 +28,8 @@ class Roles {
    * check_writable
    */
   void add_output(const std::filesystem::path &path, const std::string &use);
+  /** Whether an output is the file that \a path leads to. False for character devices. */
+  [[nodiscard]] bool has_output(const std::filesystem::path &path) const;
 
  private:
   struct Role {

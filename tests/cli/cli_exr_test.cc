@@ -88,6 +88,14 @@ TEST_F(ExrPictureTest, LuminanceIsGrey)
   EXPECT_EQ(first_pixel("ya.exr"), glm::vec3(1));
 }
 
+TEST_F(ExrPictureTest, VectorsAreNoPictures)
+{
+  write_channels("n.exr", spec, {"Normal.X", "Normal.Y", "Normal.Z", "Combined.R", "Combined.G", "Combined.B"});
+  EXPECT_EQ(first_pixel("n.exr"), glm::vec3(4, 5, 6));
+  write_channels("p.exr", spec, {"X", "Y", "Z"});
+  EXPECT_NE(error_of("p.exr").find("has no channels R, G and B, and no channel Y"), std::string::npos);
+}
+
 /** Parts of luminance and chroma, which has half of the pixels along both edges. */
 void write_chroma_parts(const std::filesystem::path &path, const std::vector<std::string> &parts)
 {

@@ -36,7 +36,7 @@ TEST_F(RadiancePictureTest, AreReadAsAnotherLibraryReadsThem)
     }
   }
   // The same pixels as runs and one by one, from the top. 2^-8 m 2^(e - 128) is the value of m with the exponent e.
-  const std::string header = "#?RGBE\nEXPOSURE=2\r\n\n-Y 1 +X 8\n";
+  const std::string header = "#?RGBE\nEXPOSURE=2\r\n\n-Y 1 +X 8 \n";
   const std::string pixel = "\x80\x40\x20\x81";
   std::string pixels = header;
   for (int i = 0; i < 8; i++) {

@@ -284,6 +284,9 @@ TEST_F(CliRenderTest, PartsWithOtherSettingsAreNotMerged)
   write("metal.gltf", test::variants_gltf);
   const std::string render = "render metal.gltf --size 16x16 --samples 2 ";
   ASSERT_EQ(run(render + "-o low.exr --tile 1/2 --variant red --light-threshold 0").status, 0);
+  ASSERT_EQ(run(render + "-o high.exr --tile 2/2 --variant blue --light-threshold 0").status, 0);
+  const std::string named = run("merge low.exr high.exr -o mixed.exr").err;
+  EXPECT_NE(named.find("gnomon:settings is '--variant blue', not '--variant red'\n"), std::string::npos) << named;
   for (const std::string other :
        {"--variant blue", "", "--variant red --texture-size-max 64", "--variant red --world 1,1,1",
         "--variant red --shadow none", "--variant red --light-threshold 0.5", "--variant red --emissive-points 3",
@@ -338,11 +341,14 @@ TEST_F(CliRenderTest, FaultsThatThePictureFindsAreNamed)
   const std::string before = R"({"doubleSided":true})";
   write("s.gltf", gltf.replace(gltf.find(before), before.size(),
                                R"({"doubleSided":true,"extras":{"gnomon_surface":"s.surface.glsl"}})"));
-  const Finished finished = run("render s.gltf -o o.exr --size 16x16 --samples 1");
-  EXPECT_EQ(finished.status, 0);
-  EXPECT_NE(finished.err.find("its surface function is broken, and magenta is drawn instead: s.surface.glsl:3"),
-            std::string::npos)
-      << finished.err;
+  for (const char *layers : {"", " --aov depth", " --aov albedo,emission"}) {
+    const Finished finished = run(std::string("render s.gltf -o o.exr --size 16x16 --samples 1") + layers);
+    EXPECT_EQ(finished.status, 0) << layers;
+    const std::string warning = "its surface function is broken, and magenta is drawn instead: s.surface.glsl:3";
+    const std::size_t found = finished.err.find(warning);
+    EXPECT_NE(found, std::string::npos) << layers << finished.err;
+    EXPECT_EQ(finished.err.find(warning, found + 1), std::string::npos) << layers << finished.err;
+  }
 }
 
 TEST_F(CliRenderTest, OnlyBelowLeavesOutFilesElsewhere)

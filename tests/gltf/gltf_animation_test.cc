@@ -90,6 +90,16 @@ TEST(GltfAnimation, MorphTargetsAreAddedByTheirWeights)
   EXPECT_EQ(scene.revision(), before) << "the same pose is no edit";
 }
 
+TEST(GltfAnimation, WhatMorphTargetsDoNotMoveIsNamed)
+{
+  GltfBuilder builder = triangle_scene();
+  const int up = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  builder.document["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}, {"COLOR_0", up}, {"TEXCOORD_0", up}}};
+  const Scene scene = import(builder);
+  EXPECT_WARNING(scene, "morph target's COLOR_0 is not read");
+  EXPECT_WARNING(scene, "morph target's TEXCOORD_0 is not read");
+}
+
 TEST(GltfAnimation, SkinsFollowTheirJointsAndNotTheirNode)
 {
   GltfBuilder builder = skinned_triangle();

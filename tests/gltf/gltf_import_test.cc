@@ -1180,6 +1180,8 @@ TEST(GltfCamera, BadNumbersLeaveItOut)
   expect_left_out("orthographic", {{"xmag", 0}, {"ymag", 1}, {"znear", 0}, {"zfar", 1}}, "xmag 0");
   expect_left_out("orthographic", {{"xmag", -1e-13}, {"ymag", 1}, {"znear", 0}, {"zfar", 1}}, "xmag -1e-13");
   expect_left_out("orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 1}, {"zfar", 1}}, "zfar 1");
+  expect_left_out("orthographic", {{"xmag", 1}, {"ymag", 1e30}, {"znear", 0}, {"zfar", 1}},
+                  "ymag 1e+30 must be from 1e-12 to 1e+12, or the negative of such a number");
 }
 
 /** Expects every corner of \a bounds to lie in the frame of a square image, between near and far. */

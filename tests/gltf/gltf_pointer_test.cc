@@ -71,6 +71,43 @@ TEST(GltfPointer, TransformsOfTexturesArePlayed)
   }
 }
 
+TEST(GltfPointer, WhatIsNotPlayedIsNamed)
+{
+  const auto expect_left_out = [](const json &target, const std::string &why) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["cameras"] = {
+        {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 1}, {"zfar", 2}}}}};
+    builder.document["nodes"][0]["camera"] = 0;
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}}};
+    builder.document["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    add_channel(builder, target, {0, 1}, {1, 2}, "SCALAR");
+    EXPECT_WARNING(import(builder), "channel left out: " + why);
+  };
+  expect_left_out(pointer_to(""), "target: has no pointer");
+  expect_left_out({{"path", "pointer"}}, "target: has no pointer");
+  expect_left_out({{"path", "pointer"}, {"node", 0}}, "target: has no pointer");
+  expect_left_out(pointer_to("/cameras/0/perspective/yfov"), "pointer: its target has no 'perspective/yfov'");
+  expect_left_out(pointer_to("/extensions/KHR_lights_punctual/lights/0/range"), "pointer: its target has no 'range'");
+  expect_left_out(pointer_to("/cameras/0/orthographic/znear"),
+                  "pointer: '/cameras/0/orthographic/znear' is not played");
+}
+
+TEST(GltfPointer, OfTwoChannelsWithOneTargetTheFirstIsPlayed)
+{
+  const json node{{"node", 0}, {"path", "translation"}};
+  for (const auto &[first, second] : {std::pair(node, node),
+                                      {node, pointer_to("/nodes/0/translation")},
+                                      {pointer_to("/nodes/0/translation"), pointer_to("/nodes/00/translation")}}) {
+    GltfBuilder builder = triangle_scene();
+    add_channel(builder, first, {0, 1}, {0, 0, 0, 1, 1, 1}, "VEC3");
+    add_channel(builder, second, {0, 1}, {0, 0, 0, 2, 2, 2}, "VEC3");
+    Scene scene = import(builder);
+    EXPECT_WARNING(scene, "channel left out: target: a channel before it has the same");
+    pose_first(scene, 1.0);
+    EXPECT_EQ(scene.objects()[0].world_from_object[3], glm::dvec4(1));
+  }
+}
+
 TEST(GltfPointer, EmissionIsTheProductOfBothFactorsInEitherOrder)
 {
   const std::string factor = "/materials/0/emissiveFactor";

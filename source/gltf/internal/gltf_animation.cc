@@ -7,6 +7,7 @@
 #include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -14,8 +15,10 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 
 namespace gnomon::gltf {
 
@@ -92,9 +95,17 @@ class AnimationImporter {
     scene::Animation animation;
     animation.name = source.name.empty() ? "animation " + std::to_string(index) : source.name;
     std::map<int, std::size_t> node_places;
+    std::set<std::string> targets;
     for (const Model::AnimationChannel &channel : source.channels) {
       try {
+        const std::string target = target_of(channel);
+        if (targets.contains(target)) {
+          throw Fault("target", "a channel before it has the same");
+        }
         import_channel(source, channel, node_places, animation);
+        if (!target.empty()) {
+          targets.insert(target);
+        }
       }
       catch (const Fault &fault) {
         warnings_.add_counted(what, 1, std::string("channel left out: ") + fault.what());
@@ -103,6 +114,19 @@ class AnimationImporter {
     if (!animation.nodes.empty() || !animation.values.empty()) {
       scene_.animations.push_back(std::move(animation));
     }
+  }
+
+  /** One text for all spellings of the target; empty: none, which is valid. */
+  static std::string target_of(const Model::AnimationChannel &channel)
+  {
+    if (!channel.pointer.empty()) {
+      const std::optional<PointerParts> parts = parts_of(channel.pointer);
+      return parts ? fmt::format("/{}/{}/{}", parts->collection, parts->index, parts->path) : channel.pointer;
+    }
+    if (channel.path == "pointer") {
+      throw Fault("target", "has no pointer");
+    }
+    return channel.node < 0 ? "" : fmt::format("/nodes/{}/{}", channel.node, channel.path);
   }
 
   void import_channel(const Model::Animation &source, const Model::AnimationChannel &channel,
@@ -128,11 +152,11 @@ class AnimationImporter {
       import_node_channel(sampler, parts->index, std::string(parts->path), node_places, animation);
       return;
     }
-    const std::string_view property = parts ? animated_property(*parts) : "";
-    if (property.empty()) {
+    const std::optional<scene::Description> property = parts ? animated_property(*parts) : std::nullopt;
+    if (!property) {
       throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
     }
-    import_value_channel(sampler, *parts, property, animation);
+    import_value_channel(sampler, *parts, *property, animation);
   }
 
   void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
@@ -176,14 +200,14 @@ class AnimationImporter {
     return true;
   }
 
-  /** Name of the property that the pointer animates; empty: none. */
-  static std::string_view animated_property(const PointerParts &parts)
+  /** The property that the pointer animates. */
+  static std::optional<scene::Description> animated_property(const PointerParts &parts)
   {
-    std::string_view property;
+    std::optional<scene::Description> property;
     for_each_animated([&](std::string_view collection, const scene::Description &row) {
       const bool is_it = row.path == parts.path || (row.name == "emissive" && parts.path == strength_path);
       if (collection == parts.collection && is_it) {
-        property = row.name;
+        property = row;
       }
     });
     return property;
@@ -251,19 +275,24 @@ class AnimationImporter {
   }
 
   void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
-                            std::string_view property, scene::Animation &animation)
+                            const scene::Description &property, scene::Animation &animation)
   {
     constexpr std::array<Model::ElementType, 5> types = {Model::ElementType::Scalar, Model::ElementType::Scalar,
                                                          Model::ElementType::Vec2, Model::ElementType::Vec3,
                                                          Model::ElementType::Vec4};
     AnimatedValue value;
-    value.property = property;
+    value.property = property.name;
     // emissiveStrength is one number, which is multiplied by the three numbers of emissiveFactor.
     const bool is_strength = parts.path == strength_path;
-    const std::size_t width = is_strength ? 1 : scene::width_of(property);
+    const std::size_t width = is_strength ? 1 : scene::width_of(property.name);
     value.track = track(sampler, width, types[width]);
     bool has_target = false;
-    const auto add = [&](auto handle, const glm::dvec3 &factor) {
+    const auto add = [&]<typename T>(Handle<T> handle, const glm::dvec3 &factor) {
+      if constexpr (!std::is_same_v<T, scene::Material>) {
+        if (!property.has_kind(unsigned(scene_.pool<T>()[handle].kind))) {
+          throw Fault("pointer", "its target has no '" + std::string(parts.path) + "'");
+        }
+      }
       value.target = handle;
       value.factor = factor;
       has_target = true;
@@ -273,13 +302,13 @@ class AnimationImporter {
       if (const auto found = things_.materials.find(parts.index); found != things_.materials.end()) {
         const Model::Material &source = file_.model.materials[std::size_t(parts.index)];
         const glm::dvec3 emissive(source.emissive[0], source.emissive[1], source.emissive[2]);
-        add(found->second, is_strength              ? emissive
-                           : property == "emissive" ? glm::dvec3(source.emissive_strength)
-                                                    : glm::dvec3(1.0));
+        add(found->second, is_strength                   ? emissive
+                           : property.name == "emissive" ? glm::dvec3(source.emissive_strength)
+                                                         : glm::dvec3(1.0));
       }
     }
     else if (parts.collection == "lights") {
-      const bool is_intensity = property == "intensity";
+      const bool is_intensity = property.name == "intensity";
       if (const auto found = things_.lamps.find(parts.index); found != things_.lamps.end()) {
         for (const Handle<scene::Lamp> lamp : found->second) {
           add(lamp, glm::dvec3(is_intensity ? 1.0 / lumen_per_watt : 1.0));

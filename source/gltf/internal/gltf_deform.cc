@@ -60,6 +60,11 @@ void read_targets(const File &file, const Model::Primitive &primitive, std::span
       read = {};
       warnings.add_counted(what, 1, std::string("morph target left out: ") + fault.what());
     }
+    for (const auto &[name, accessor] : target) {
+      if (name != "POSITION" && name != "NORMAL" && name != "TANGENT") {
+        warnings.add_counted(what, 1, "morph target's " + name + " is not read");
+      }
+    }
   }
   deformed.weights.assign(deformed.targets.size(), 0.0);
 }

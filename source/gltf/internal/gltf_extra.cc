@@ -11,7 +11,7 @@ namespace gnomon::gltf {
 std::string Range::text() const
 {
   if (least > 0.0) {
-    return "at least " + gltf::text(least) + " or at most -" + gltf::text(least);
+    return "from " + gltf::text(least) + " to " + gltf::text(max) + ", or the negative of such a number";
   }
   return "from " + gltf::text(min) + " to " + gltf::text(max) + (zero.empty() || min <= 0.0 ? "" : ", or 0");
 }
