@@ -31,7 +31,8 @@ class DepthPasses {
   {
     return gbuffer_pass_;
   }
-  /** Record the lighting of the G-buffer anew. It is empty if that has no objects. \a bind: binds what programs with lighting read. */
+  /** Record the lighting of the G-buffer anew. It is empty if that has no objects. \a bind: binds what programs with
+   * lighting read. */
   void record_lighting(gpu::Device &device, ShaderCache &shaders, Feature features, const BindLit &bind);
 
   [[nodiscard]] bool has_gbuffer() const
