@@ -89,7 +89,7 @@ struct SceneWork {
   const StopRequests &stops;
   Progress &progress;
   RenderResult &result;
-  /** \see content_of. Empty: no part of a picture is written. */
+  /** ImportedScene::fingerprint. */
   const std::string &content;
 };
 
@@ -154,8 +154,20 @@ void print_new_messages(std::string_view kind, const std::vector<std::string> &t
 
 struct ImportedScene {
   scene::Scene scene;
+  /** \see PlannedScene::fingerprint. Empty: it is not compared. */
+  std::string fingerprint{};
   double seconds = 0.0;
 };
+
+/**
+ * A fingerprint of the files that make a picture, so that parts of other content are not merged. \a scene: before it is
+ * posed, which differs between processors
+ */
+std::string content_fingerprint(const scene::Scene &scene, const WorldOptions &world)
+{
+  std::error_code ignored;
+  return scene_fingerprint(scene) + (fs::is_regular_file(world.world, ignored) ? file_fingerprint(world.world) : "");
+}
 
 /** Imports on another thread. \a options and \a stops must outlive it. */
 std::future<ImportedScene> start_import(const RenderOptions &options, const StopRequests &stops)
@@ -164,8 +176,12 @@ std::future<ImportedScene> start_import(const RenderOptions &options, const Stop
     const Clock::time_point start = Clock::now();
     gltf::ImportOptions import_options = options.import_options();
     import_options.progress = [&stops](float) { return !stops.is_stopped(); };
-    scene::Scene scene = import_scene(options.scene, import_options);
-    return ImportedScene{std::move(scene), seconds_since(start)};
+    ImportedScene imported{.scene = import_scene(options.scene, import_options)};
+    if (options.is_part() || options.has_checkpoint || !options.plan_id.empty()) {
+      imported.fingerprint = content_fingerprint(imported.scene, options.world);
+    }
+    imported.seconds = seconds_since(start);
+    return imported;
   });
 }
 
@@ -189,7 +205,7 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
     picture.metadata.emplace_back("gnomon:content", work.content);
   }
   if (!options.plan_id.empty()) {
-    picture.metadata.emplace_back(plan_metadata, options.plan_id);
+    std::ranges::copy(planned_metadata(options.plan_id, options.output), std::back_inserter(picture.metadata));
   }
   // Also called for the null backend, because both report lamps and layers that do not exist.
   const gpu::Texture *shadow = nullptr;
@@ -324,26 +340,6 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
   return Status::Done;
 }
 
-/** \see PlannedScene::fingerprint */
-std::string planned_fingerprint(const scene::Scene &scene, const WorldOptions &world)
-{
-  std::error_code ignored;
-  return scene_fingerprint(scene) + (fs::is_regular_file(world.world, ignored) ? file_fingerprint(world.world) : "");
-}
-
-/**
- * A fingerprint of the files that make a picture, so that parts of other content are not merged. \a imported: of the
- * scene before it is posed, which differs between processors
- */
-std::string content_of(const std::string &imported, const std::optional<scene::World> &world)
-{
-  scene::Scene sky;
-  if (world && world->picture && !world->picture->path.empty()) {
-    sky.set_world(world);
-  }
-  return imported + scene_fingerprint(sky);
-}
-
 /** Renders and writes all frames of the sequence. */
 Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, const scene::PlacedCamera &camera,
                        eevee::SceneRenderer &renderer)
@@ -357,15 +353,14 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
-Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, Roles &roles,
+Status render_scene(RenderOptions options, gpu::Device &device, ImportedScene &imported, Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
+  scene::Scene &scene = imported.scene;
   const glm::ivec2 size_px = options.size_px();
   FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
-  const bool is_part = options.is_part() || options.has_checkpoint;
-  const std::string imported = is_part ? scene_fingerprint(scene) : std::string();
   frames.choose_animations(scene);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
@@ -373,7 +368,6 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
   constexpr glm::vec3 light_grey(0.6F);
   const eevee::Background background = background_of(
       options.background, is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt);
-  const std::string content = is_part ? content_of(imported, scene.world()) : std::string();
   aov.check(scene);
   std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);
@@ -410,7 +404,7 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
 
   Progress progress(options.has_progress_lines, frames.count(), options.samples);
   const Status status =
-      render_sequence({options, frames, stops, progress, result, content}, aov, scene, camera, renderer);
+      render_sequence({options, frames, stops, progress, result, imported.fingerprint}, aov, scene, camera, renderer);
   // Surface functions are compiled by the first picture.
   eevee::Report drawn = inspection.report();
   print_new_messages("warning", drawn.warnings, result.report.warnings);
@@ -501,7 +495,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     std::future<ImportedScene> next;
     try {
       ImportedScene imported = import.get();
-      if (!options.plan_id.empty() && planned_fingerprint(imported.scene, options.world) != options.planned_scene) {
+      if (!options.plan_id.empty() && imported.fingerprint != options.planned_scene) {
         throw std::runtime_error(
             fmt::format("{}: has changed since the plan was made, or the world has", scenes[i].scene));
       }
@@ -510,7 +504,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
       }
       result = of_device;
       result.import_seconds = imported.seconds;
-      const Status scene_status = render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, result);
+      const Status scene_status = render_scene(scenes[i], *device, imported, roles, stops, scene_start, result);
       status = status == Status::Done ? scene_status : status;
     }
     catch (const gltf::ImportCancelled &) {
@@ -549,8 +543,8 @@ Status render(RenderOptions options, RenderResult &result)
 }
 
 /** The options that go with --part: those of the process. */
-constexpr std::array<std::string_view, 7> options_of_part_process = {
-    "--help", "--part", "--json", "--trace", "--stop-after", "--checkpoint", "--progress"};
+constexpr std::array<std::string_view, 6> options_of_part_process = {"--help",  "--part",       "--json",
+                                                                     "--trace", "--stop-after", "--progress"};
 
 /** The options of the plan's part. \a given: those of the command line. \throws CLI::ParseError */
 RenderOptions options_of_part(const RenderOptions &given, const WorkPlan &plan, const WorkPart &part)
@@ -580,7 +574,6 @@ RenderOptions options_of_part(const RenderOptions &given, const WorkPlan &plan, 
   options.planned_scene = scene.fingerprint;
   options.part = given.part;
   options.stop_seconds = given.stop_seconds;
-  options.has_checkpoint = given.has_checkpoint;
   options.has_progress_lines = given.has_progress_lines;
   const auto absolute = [](const std::string &path) { return path.empty() ? path : fs::absolute(path).string(); };
   options.json = absolute(given.json);
@@ -611,13 +604,9 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
     }
   }
   const PartName name(given.part);
-  const WorkPlan plan = read_plan(name.plan);
+  const WorkPlan plan = read_plan(name.plan, program_name());
   if (name.index >= plan.parts.size()) {
     throw UsageError(fmt::format("--part '{}': the plan has the parts 0 to {}", given.part, plan.parts.size() - 1));
-  }
-  if (plan.program != program_name()) {
-    throw std::runtime_error(
-        fmt::format("{}: is a plan of {}, and this is {}", name.plan.string(), plan.program, program_name()));
   }
   const RenderOptions options = options_of_part(given, plan, plan.parts[name.index]);
   fs::current_path(fs::absolute(name.plan).parent_path() / plan.folder);
@@ -658,7 +647,7 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
 {
   const Clock::time_point start = Clock::now();
   scene::Scene scene = import_scene(options.scene, options.import_options());
-  MeasuredScene measured{planned_fingerprint(scene, options.world), {}};
+  MeasuredScene measured{content_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
   frames.choose_animations(scene);
   frames.pose(scene, 0);
