@@ -162,11 +162,15 @@ std::string pixel_checksum(const Imath::Box2i &window, const Imf::FrameBuffer &p
       // The address of pixel (0, 0) may be outside of the values, and strides may be negative.
       auto address = reinterpret_cast<std::uintptr_t>(slice.base) + slice.yStride * std::size_t(y) +
                      slice.xStride * std::size_t(window.min.x);
-      for (float &value : row) {
-        std::memcpy(&value, reinterpret_cast<const void *>(address), sizeof(value));
-        address += slice.xStride;
+      const void *values = reinterpret_cast<const void *>(address);
+      if (slice.xStride != sizeof(float)) {
+        for (float &value : row) {
+          std::memcpy(&value, reinterpret_cast<const void *>(address), sizeof(value));
+          address += slice.xStride;
+        }
+        values = row.data();
       }
-      hash = XXH3_64bits_withSeed(row.data(), row.size() * sizeof(float), hash);
+      hash = XXH3_64bits_withSeed(values, row.size() * sizeof(float), hash);
     }
   }
   return fmt::format("{:016x}", hash);
