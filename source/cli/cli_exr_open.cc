@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Limits of EXR files: OpenEXR allocates what a header states before it reads it.
+// Limits of EXR files: OpenEXR allocates what a header states before it reads it. Checksums of headers and pixels.
 #include "internal/cli_exr_file.hh"
 #include "internal/cli_picture_formats.hh"
+
+#include "cli_exr_part.hh"
 
 #include <ImfChannelList.h>
 #include <ImfTileDescription.h>
 #include <ImfVersion.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <vector>
 
 namespace gnomon::cli {
 
@@ -18,19 +22,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** The numbers and names of a file's headers, in its order. */
+/** The numbers, names and values of a file's headers, in its order, and a hash of them. */
 class HeaderReader {
  public:
-  HeaderReader(const fs::path &path, std::uint64_t file_bytes)
-      : stream_(path, std::ios::binary), file_bytes_(file_bytes)
-  {
-  }
+  HeaderReader(std::istream &stream, std::uint64_t file_bytes) : stream_(stream), file_bytes_(file_bytes) {}
 
   std::uint32_t number()
   {
     std::array<unsigned char, 4> bytes{};
     stream_.read(reinterpret_cast<char *>(bytes.data()), bytes.size());
     check();
+    add(bytes.data(), bytes.size());
     return bytes[0] | unsigned(bytes[1]) << 8U | unsigned(bytes[2]) << 16U | unsigned(bytes[3]) << 24U;
   }
 
@@ -45,17 +47,40 @@ class HeaderReader {
     if (text.size() > length_max) {
       throw std::runtime_error("has a header that is damaged");
     }
+    add(text.c_str(), text.size() + 1);
     return text;
   }
 
-  void skip_value(const std::string &name, std::uint32_t bytes)
+  void value(const std::string &name, std::uint32_t bytes)
   {
     const auto at = std::uint64_t(stream_.tellg());
     if (bytes > file_bytes_ - std::min(at, file_bytes_)) {
       throw std::runtime_error(
           fmt::format("is cut off: its attribute '{}' has {} bytes, and the file has {}", name, bytes, file_bytes_));
     }
-    stream_.seekg(std::streamoff(at + bytes));
+    const bool is_checksum = name == checksum_metadata;
+    if (is_checksum) {
+      scan_.checksum_at = at;
+      scan_.checksum.clear();
+    }
+    std::array<char, 4096> block;
+    for (std::uint32_t left = bytes; left > 0;) {
+      const std::uint32_t size = std::min(left, std::uint32_t(block.size()));
+      stream_.read(block.data(), size);
+      check();
+      left -= size;
+      if (is_checksum) {
+        scan_.checksum.append(block.data(), size);
+      }
+      else {
+        add(block.data(), size);
+      }
+    }
+  }
+
+  [[nodiscard]] const HeaderScan &scan() const
+  {
+    return scan_;
   }
 
  private:
@@ -65,32 +90,15 @@ class HeaderReader {
       throw std::runtime_error("is cut off in its header");
     }
   }
-
-  std::ifstream stream_;
-  std::uint64_t file_bytes_;
-};
-
-/** \throws std::runtime_error if an attribute is longer than the file. */
-void check_attributes(const fs::path &path, std::uint64_t file_bytes)
-{
-  HeaderReader reader(path, file_bytes);
-  if (reader.number() != std::uint32_t(Imf::MAGIC)) {
-    throw std::runtime_error("is no EXR file");
+  void add(const void *bytes, std::size_t size)
+  {
+    scan_.hash = XXH3_64bits_withSeed(bytes, size, scan_.hash);
   }
-  const bool has_parts = Imf::isMultiPart(int(reader.number()));
-  std::string name;
-  do {
-    bool is_empty = true;
-    for (name = reader.name(); !name.empty(); name = reader.name()) {
-      is_empty = false;
-      static_cast<void>(reader.name());
-      reader.skip_value(name, reader.number());
-    }
-    if (is_empty) {
-      break;
-    }
-  } while (has_parts);
-}
+
+  std::istream &stream_;
+  std::uint64_t file_bytes_;
+  HeaderScan scan_;
+};
 
 /** Bytes of pixels that a stored byte can stand for, rounded up. */
 std::uint64_t largest_ratio(Imf::Compression compression)
@@ -117,6 +125,80 @@ std::uint64_t largest_ratio(Imf::Compression compression)
 
 }  // namespace
 
+HeaderScan scan_headers(std::istream &stream, std::uint64_t file_bytes)
+{
+  HeaderReader reader(stream, file_bytes);
+  if (reader.number() != std::uint32_t(Imf::MAGIC)) {
+    throw std::runtime_error("is no EXR file");
+  }
+  const bool has_parts = Imf::isMultiPart(int(reader.number()));
+  std::string name;
+  do {
+    bool is_empty = true;
+    for (name = reader.name(); !name.empty(); name = reader.name()) {
+      is_empty = false;
+      static_cast<void>(reader.name());
+      reader.value(name, reader.number());
+    }
+    if (is_empty) {
+      break;
+    }
+  } while (has_parts);
+  return reader.scan();
+}
+
+std::string header_checksum(const HeaderScan &scan)
+{
+  return fmt::format("{:016x}", scan.hash);
+}
+
+std::string pixel_checksum(const Imath::Box2i &window, const Imf::FrameBuffer &pixels)
+{
+  std::vector<float> row(std::size_t(window.max.x - window.min.x) + 1);
+  std::uint64_t hash = 0;
+  for (auto channel = pixels.begin(); channel != pixels.end(); ++channel) {
+    const Imf::Slice &slice = channel.slice();
+    for (int y = window.min.y; y <= window.max.y; y++) {
+      // The address of pixel (0, 0) may be outside of the values, and strides may be negative.
+      auto address = reinterpret_cast<std::uintptr_t>(slice.base) + slice.yStride * std::size_t(y) +
+                     slice.xStride * std::size_t(window.min.x);
+      const void *values = reinterpret_cast<const void *>(address);
+      if (slice.xStride != sizeof(float)) {
+        for (float &value : row) {
+          std::memcpy(&value, reinterpret_cast<const void *>(address), sizeof(value));
+          address += slice.xStride;
+        }
+        values = row.data();
+      }
+      hash = XXH3_64bits_withSeed(values, row.size() * sizeof(float), hash);
+    }
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+static void check_checksum(const std::string &stated, const std::string &found, const char *what)
+{
+  if (stated != found) {
+    throw std::runtime_error(
+        fmt::format("is damaged, or another program has changed it: the checksum of its {} differs", what));
+  }
+}
+
+void ExrInput::check_headers() const
+{
+  if (!scan_.checksum.empty()) {
+    check_checksum(scan_.checksum.substr(std::min<std::size_t>(16, scan_.checksum.size())), header_checksum(scan_),
+                   "header");
+  }
+}
+
+void ExrInput::check_pixels(const Imf::FrameBuffer &pixels) const
+{
+  if (!scan_.checksum.empty()) {
+    check_checksum(scan_.checksum.substr(0, 16), pixel_checksum(file_->header(0).dataWindow(), pixels), "pixels");
+  }
+}
+
 glm::ivec2 size_of_window(const Imath::Box2i &window)
 {
   const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
@@ -126,7 +208,8 @@ glm::ivec2 size_of_window(const Imath::Box2i &window)
 
 ExrInput::ExrInput(const fs::path &path) : file_bytes_(fs::file_size(path))
 {
-  check_attributes(path, file_bytes_);
+  std::ifstream stream(path, std::ios::binary);
+  scan_ = scan_headers(stream, file_bytes_);
   // Rows of a file that is cut off are not looked for: such a file is refused.
   file_.emplace(path.c_str(), Imf::globalThreadCount(), false);
 }

@@ -12,6 +12,9 @@ inline constexpr const char *share_metadata = "gnomon:sample_share";
 /** "A-B": the first and the last sample that it contains. */
 inline constexpr const char *range_metadata = "gnomon:sample_range";
 
+/** Hashes of a file's pixels and of the rest of its header. Files of older versions have none. */
+inline constexpr const char *checksum_metadata = "gnomon:checksum";
+
 /** An EXR file with a part of a picture, or with the whole. Rows from the top, as in the file. */
 struct ExrPart {
   glm::ivec2 whole_size_px{0};
@@ -26,7 +29,9 @@ struct ExrPart {
 /** Whether to read pixels. Without them, channels have names only. */
 enum class ExrContent { Header, All };
 
-/** \throws std::runtime_error naming \a path if it is no EXR file of 32-bit floats, is cut off, or exceeds the picture
+/**
+ * \throws std::runtime_error naming \a path if it is no EXR file of 32-bit floats, is cut off, exceeds the picture, or
+ * has a checksum that is not its own: that of the header, and that of the pixels if they are read
  */
 [[nodiscard]] ExrPart read_exr_part(const std::filesystem::path &path, ExrContent content = ExrContent::All);
 /** Writes the file atomically. \throws std::runtime_error naming \a path if it cannot be written */

@@ -43,6 +43,12 @@ class Hasher {
       add(value[i]);
     }
   }
+  template <typename T>
+  void add(const scene::Handle<T> &handle)
+  {
+    add(bool(handle));
+    add(handle.index);
+  }
   void add(const glm::dmat4 &value)
   {
     for (int column = 0; column < 4; column++) {
@@ -75,15 +81,10 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
-/** All properties but the name. */
 template <typename Thing>
 void add_properties(Hasher &hash, const Thing &thing)
 {
-  Thing::for_each_property([&](const auto &row) {
-    if (row.name != "name") {
-      hash.add(thing.*row.member);
-    }
-  });
+  Thing::for_each_property([&](const auto &row) { hash.add(thing.*row.member); });
 }
 
 void add(Hasher &hash, const scene::Scene &scene, const scene::TextureSlot &slot)
@@ -115,20 +116,32 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   }
 }
 
-void add(Hasher &hash, const scene::PlacedLamp &lamp)
+void add(Hasher &hash, const scene::Mesh &mesh)
 {
-  hash.add(lamp.name);
-  hash.add(lamp.world_from_lamp);
-  hash.add(lamp.scale);
-  add_properties(hash, lamp);
-  add_properties(hash, lamp.shadow);
+  hash.add(mesh.positions);
+  hash.add(mesh.normals);
+  hash.add(mesh.uvs);
+  hash.add(mesh.second_uvs);
+  hash.add(mesh.tangents);
+  hash.add(mesh.colors);
+  hash.add(mesh.indices);
+  hash.add(mesh.topology);
+  hash.add(mesh.material);
 }
 
-void add(Hasher &hash, const scene::PlacedCamera &camera)
+/** The node with its place in the tree, by which animations of other nodes move it, also if it cannot be seen yet. */
+void add(Hasher &hash, const scene::Scene &scene, scene::Handle<scene::Node> handle, const scene::Node &node)
 {
-  hash.add(camera.name);
-  hash.add(camera.world_from_camera);
-  add_properties(hash, camera);
+  hash.add(handle);
+  hash.add(scene.parent(handle));
+  hash.add(node.parent_from_node);
+  hash.add(node.meshes.size());
+  for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
+    hash.add(mesh);
+  }
+  hash.add(node.lamp);
+  hash.add(node.camera);
+  add_properties(hash, node);
 }
 
 void add(Hasher &hash, const scene::SharedTrack &track)
@@ -145,8 +158,9 @@ void add(Hasher &hash, const scene::SharedTrack &track)
 void add(Hasher &hash, const scene::Animation &animation)
 {
   hash.add(animation.name);
+  hash.add(animation.nodes.size());
   for (const scene::AnimatedNode &node : animation.nodes) {
-    hash.add(node.node.index);
+    hash.add(node.node);
     hash.add(node.translation);
     hash.add(glm::dvec4(node.rotation.x, node.rotation.y, node.rotation.z, node.rotation.w));
     hash.add(node.scale);
@@ -155,9 +169,10 @@ void add(Hasher &hash, const scene::Animation &animation)
       add(hash, *track);
     }
   }
+  hash.add(animation.values.size());
   for (const scene::AnimatedValue &value : animation.values) {
     hash.add(value.target.index());
-    std::visit([&](const auto &target) { hash.add(target.index); }, value.target);
+    std::visit([&](const auto &target) { hash.add(target); }, value.target);
     hash.add(value.property);
     hash.add(value.slot);
     hash.add(value.factor);
@@ -169,16 +184,22 @@ void add(Hasher &hash, const scene::Animation &animation)
 /** The rest shape, and what deforms it. */
 void add(Hasher &hash, const scene::DeformedMesh &deformed)
 {
-  hash.add(deformed.mesh.index);
-  hash.add(deformed.node.index);
+  hash.add(deformed.mesh);
+  hash.add(deformed.node);
   hash.add(deformed.positions);
   hash.add(deformed.normals);
+  hash.add(deformed.tangents);
+  hash.add(deformed.has_flat_normals);
+  hash.add(deformed.weights);
+  hash.add(deformed.targets.size());
   for (const scene::MorphTarget &target : deformed.targets) {
     hash.add(target.positions);
     hash.add(target.normals);
     hash.add(target.tangents);
   }
   hash.add(deformed.skin);
+  hash.add(deformed.joint_sets);
+  hash.add(deformed.joint_weights.size());
   for (const scene::JointWeights &weights : deformed.joint_weights) {
     for (const std::uint16_t joint : weights.joints) {
       hash.add(joint);
@@ -192,29 +213,35 @@ void add(Hasher &hash, const scene::DeformedMesh &deformed)
 std::string scene_fingerprint(const scene::Scene &scene)
 {
   Hasher hash;
+  for (const std::size_t count : {scene.images().size(), scene.materials().size(), scene.meshes().size(),
+                                  scene.lamps().size(), scene.cameras().size(), scene.nodes().size(),
+                                  scene.animations.size(), scene.skins.size(), scene.deformed_meshes.size()}) {
+    hash.add(count);
+  }
   for (const auto &[handle, image] : scene.images()) {
     hash.add(image.width);
     hash.add(image.height);
     hash.add(image.texels);
   }
+  for (const auto &[handle, material] : scene.materials()) {
+    hash.add(handle);
+    add(hash, scene, material);
+  }
   for (const auto &[handle, mesh] : scene.meshes()) {
-    hash.add(mesh.positions);
-    hash.add(mesh.normals);
-    hash.add(mesh.uvs);
-    hash.add(mesh.second_uvs);
-    hash.add(mesh.tangents);
-    hash.add(mesh.colors);
-    hash.add(mesh.indices);
-    hash.add(mesh.topology);
-    add(hash, scene, scene.material_of(mesh));
+    hash.add(handle);
+    add(hash, mesh);
   }
-  for (const scene::Object &object : scene.objects()) {
-    hash.add(object.mesh.index);
-    hash.add(object.world_from_object);
-    add_properties(hash, scene.nodes()[object.node]);
+  for (const auto &[handle, lamp] : scene.lamps()) {
+    hash.add(handle);
+    add_properties(hash, lamp);
+    add_properties(hash, lamp.shadow);
   }
-  for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
-    add(hash, lamp);
+  for (const auto &[handle, camera] : scene.cameras()) {
+    hash.add(handle);
+    add_properties(hash, camera);
+  }
+  for (const auto &[handle, node] : scene.nodes()) {
+    add(hash, scene, handle, node);
   }
   if (const std::optional<scene::World> &world = scene.world()) {
     add_properties(hash, *world);
@@ -223,15 +250,13 @@ std::string scene_fingerprint(const scene::Scene &scene)
       hash.add(world->picture->texels);
     }
   }
-  for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
-    add(hash, camera);
-  }
   for (const scene::Animation &animation : scene.animations) {
     add(hash, animation);
   }
   for (const scene::Skin &skin : scene.skins) {
+    hash.add(skin.joints.size());
     for (const scene::Handle<scene::Node> joint : skin.joints) {
-      hash.add(joint.index);
+      hash.add(joint);
     }
     for (const glm::dmat4 &matrix : skin.joint_from_mesh) {
       hash.add(matrix);

@@ -10,8 +10,8 @@
 namespace gnomon::cli {
 
 /**
- * Hash of all parts of a scene that affect pictures, also of other frames, and of the names of its lamps, cameras and
- * animations. It depends neither on the paths nor on the encoding of the files.
+ * Hash of all parts of a scene that affect pictures, also of other frames, and of the names of its things. It depends
+ * neither on the paths nor on the encoding of the files.
  */
 [[nodiscard]] std::string scene_fingerprint(const scene::Scene &scene);
 

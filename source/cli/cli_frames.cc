@@ -66,9 +66,11 @@ bool FrameSequence::is_done(int index, glm::ivec2 size_px, const std::string &pl
     return false;
   }
   try {
-    return read_picture(file).size_px == size_px &&
-           (plan_id.empty() ||
-            metadata_value(read_exr_part(file, ExrContent::Header).metadata, plan_metadata) == plan_id);
+    if (plan_id.empty()) {
+      return read_picture(file).size_px == size_px;
+    }
+    const ExrPart part = read_exr_part(file);
+    return part.whole_size_px == size_px && planned_fault(part.metadata, plan_id, file.string()).empty();
   }
   catch (const std::runtime_error &) {
     // The file is incomplete, for example because the program was interrupted. Render it again.

@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_exr_part.hh"
+#include "cli_origin.hh"
 #include "cli_output.hh"
 #include "cli_work_plan.hh"
 
@@ -39,7 +40,8 @@ struct MergeOptions {
 /** Metadata that may differ between the parts of one picture. */
 bool is_of_part(const std::string &name)
 {
-  return name == share_metadata || name == range_metadata || name == "gnomon:device" || name == plan_metadata;
+  return name == share_metadata || name == range_metadata || name == "gnomon:device" || name == plan_metadata ||
+         name == planned_file_metadata || name == checksum_metadata;
 }
 
 /** Leaves out the options that two lists of options begin with and end with. */
@@ -291,7 +293,7 @@ Status merge(const MergeOptions &options)
   return status;
 }
 
-/** The reason why \a path is not a complete file of the plan \a id; empty: it is one. */
+/** The reason why \a path is not complete, or not the file of this name of the plan \a id; empty: it is. */
 std::string fault_of(const std::string &path, const std::string &id)
 {
   std::error_code ignored;
@@ -299,8 +301,8 @@ std::string fault_of(const std::string &path, const std::string &id)
     return path + (std::filesystem::exists(path, ignored) ? ": is no regular file" : ": is missing");
   }
   try {
-    const ExrPart part = read_exr_part(path);
-    return metadata_value(part.metadata, plan_metadata) == id ? "" : path + ": is not of this plan";
+    const std::string fault = planned_fault(read_exr_part(path).metadata, id, path);
+    return fault.empty() ? "" : path + ": " + fault;
   }
   catch (const std::runtime_error &error) {
     return error.what();
@@ -328,7 +330,7 @@ void find_faults(std::vector<PlannedFile> &files, const std::string &id)
 /** Checks all parts of a plan, and joins those of pictures that are divided. */
 Status merge_plan(const std::string &path, bool is_checked_only)
 {
-  const WorkPlan plan = read_plan(path);
+  const WorkPlan plan = read_plan(path, program_name());
   std::filesystem::current_path(std::filesystem::absolute(path).parent_path() / plan.folder);
   const std::string id = plan.id();
   std::vector<PlannedFile> files;
@@ -379,7 +381,7 @@ Status merge_plan(const std::string &path, bool is_checked_only)
   }
   for (const auto &[picture, names] : divided) {
     ExrPart whole = merge_parts(names);
-    whole.metadata.emplace_back(plan_metadata, id);
+    std::ranges::copy(planned_metadata(id, picture), std::back_inserter(whole.metadata));
     if (const Status status = write_merged(picture, whole); status != Status::Done) {
       return status;
     }
@@ -392,8 +394,10 @@ Status merge_plan(const std::string &path, bool is_checked_only)
 
 void add_merge(CLI::App &app, Status &status)
 {
-  CLI::App *command =
-      app.add_subcommand("merge", "Join the parts of one picture from `gnomon render --tile` and `--sample-range`");
+  CLI::App *command = app.add_subcommand(
+      "merge",
+      "Join the parts of one picture from `gnomon render --tile` and `--sample-range`, or check and join the "
+      "files of a plan of `gnomon plan`");
   auto options = std::make_shared<MergeOptions>();
   CLI::Option *parts = command->add_option("parts", options->parts, "EXR files of all parts");
   CLI::Option *output = command->add_option("-o,--output", options->output, "OUT.exr: the whole picture");

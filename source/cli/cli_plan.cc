@@ -103,7 +103,12 @@ Status plan(const PlanOptions &options, const CLI::App &command)
     }
     const FrameSequence frames(render.frames, render.output);
     // The first picture stands for all frames, because their names differ by the number only.
-    roles.add_output(frames.path(0), "--pictures of " + path);
+    const fs::path first = frames.path(0);
+    if (first.has_parent_path() && !fs::is_directory(first.parent_path())) {
+      throw std::runtime_error(
+          fmt::format("--pictures '{}': the folder '{}' does not exist", render.output, first.parent_path().string()));
+    }
+    roles.add_output(first, "--pictures of " + path);
     MeasuredScene measured = measure_scene(render, device.get());
     if (!device) {
       measured.cost.sample_seconds = options.seconds_per_frame / render.samples;
@@ -143,6 +148,7 @@ void add_plan(CLI::App &app, Status &status)
   for (const char *name : {"--time-limit", "--max-error", "--max-time", "--report"}) {
     command->remove_option(command->get_option(name));
   }
+  command->footer(exclusions_text(*command));
   command->add_option("-o,--plan", options->plan, "PLAN.json: the parts, and the options that they have in common")
       ->required();
   command->add_option("--pictures", options->pictures,

@@ -95,7 +95,7 @@ struct SceneWork {
   const StopRequests &stops;
   Progress &progress;
   RenderResult &result;
-  /** \see content_of. Empty: no part of a picture is written. */
+  /** ImportedScene::fingerprint. */
   const std::string &content;
 };
 
@@ -166,8 +166,20 @@ void print_new_messages(std::string_view kind, const std::vector<std::string> &t
 
 struct ImportedScene {
   scene::Scene scene;
+  /** \see PlannedScene::fingerprint. Empty: it is not compared. */
+  std::string fingerprint{};
   double seconds = 0.0;
 };
+
+/**
+ * A fingerprint of the files that make a picture, so that parts of other content are not merged. \a scene: before it is
+ * posed, which differs between processors
+ */
+std::string content_fingerprint(const scene::Scene &scene, const WorldOptions &world)
+{
+  std::error_code ignored;
+  return scene_fingerprint(scene) + (fs::is_regular_file(world.world, ignored) ? file_fingerprint(world.world) : "");
+}
 
 /** Imports on another thread. \a options and \a stops must outlive it. */
 std::future<ImportedScene> start_import(const RenderOptions &options, const StopRequests &stops)
@@ -176,8 +188,12 @@ std::future<ImportedScene> start_import(const RenderOptions &options, const Stop
     const Clock::time_point start = Clock::now();
     gltf::ImportOptions import_options = options.import_options();
     import_options.progress = [&stops](float) { return !stops.is_stopped(); };
-    scene::Scene scene = import_scene(options.scene, import_options);
-    return ImportedScene{std::move(scene), seconds_since(start)};
+    ImportedScene imported{.scene = import_scene(options.scene, import_options)};
+    if (options.is_part() || options.has_checkpoint || !options.plan_id.empty()) {
+      imported.fingerprint = content_fingerprint(imported.scene, options.world);
+    }
+    imported.seconds = seconds_since(start);
+    return imported;
   });
 }
 
@@ -201,7 +217,7 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
     picture.metadata.emplace_back("gnomon:content", work.content);
   }
   if (!options.plan_id.empty()) {
-    picture.metadata.emplace_back(plan_metadata, options.plan_id);
+    std::ranges::copy(planned_metadata(options.plan_id, options.output), std::back_inserter(picture.metadata));
   }
   // Also called for the null backend, because both report lamps and layers that do not exist.
   const gpu::Texture *shadow = nullptr;
@@ -336,26 +352,6 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
   return Status::Done;
 }
 
-/** \see PlannedScene::fingerprint */
-std::string planned_fingerprint(const scene::Scene &scene, const WorldOptions &world)
-{
-  std::error_code ignored;
-  return scene_fingerprint(scene) + (fs::is_regular_file(world.world, ignored) ? file_fingerprint(world.world) : "");
-}
-
-/**
- * A fingerprint of the files that make a picture, so that parts of other content are not merged. \a imported: of the
- * scene before it is posed, which differs between processors
- */
-std::string content_of(const std::string &imported, const std::optional<scene::World> &world)
-{
-  scene::Scene sky;
-  if (world && world->picture && !world->picture->path.empty()) {
-    sky.set_world(world);
-  }
-  return imported + scene_fingerprint(sky);
-}
-
 /** Renders and writes all frames of the sequence. */
 Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, const scene::PlacedCamera &camera,
                        eevee::SceneRenderer &renderer)
@@ -372,23 +368,18 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
 struct PreparedScene {
   scene::PlacedCamera camera;
   eevee::Background background;
-  /** \see content_of. Empty for a whole picture. */
-  std::string content;
 };
 
 /** Poses and lights the scene. */
 PreparedScene prepare(const RenderOptions &options, FrameSequence &frames, scene::Scene &scene)
 {
-  const bool is_part = options.is_part() || options.has_checkpoint;
-  const std::string imported = is_part ? scene_fingerprint(scene) : std::string();
   frames.choose_animations(scene);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
   constexpr glm::vec3 light_grey(0.6F);
   const std::optional<glm::vec3> own = is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt;
-  return {camera, background_of(options.background, own),
-          is_part ? content_of(imported, scene.world()) : std::string()};
+  return {camera, background_of(options.background, own)};
 }
 
 /** Prints the results of a picture that was asked for as a whole. */
@@ -404,14 +395,15 @@ void print_result(const RenderOptions &options, const RenderResult &result, cons
 }
 
 /** Renders the pictures of one scene. The result has the times of the import and of the device. */
-Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, output::Roles &roles,
+Status render_scene(RenderOptions options, gpu::Device &device, ImportedScene &imported, output::Roles &roles,
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
+  scene::Scene &scene = imported.scene;
   const glm::ivec2 size_px = options.size_px();
   FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
-  const auto [camera, background, content] = prepare(options, frames, scene);
+  const auto [camera, background] = prepare(options, frames, scene);
   aov.check(scene);
   std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);
@@ -449,7 +441,7 @@ Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &sc
 
   Progress progress(options.has_progress_lines, frames.count(), options.samples);
   const Status status =
-      render_sequence({options, frames, stops, progress, result, content}, aov, scene, camera, renderer);
+      render_sequence({options, frames, stops, progress, result, imported.fingerprint}, aov, scene, camera, renderer);
   // Surface functions are compiled by the first picture.
   if (aov.empty()) {
     result.report = inspection.report();
@@ -538,7 +530,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     std::future<ImportedScene> next;
     try {
       ImportedScene imported = import.get();
-      if (!options.plan_id.empty() && planned_fingerprint(imported.scene, options.world) != options.planned_scene) {
+      if (!options.plan_id.empty() && imported.fingerprint != options.planned_scene) {
         throw std::runtime_error(
             fmt::format("{}: has changed since the plan was made, or the world has", scenes[i].scene));
       }
@@ -547,7 +539,7 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
       }
       result = of_device;
       result.import_seconds = imported.seconds;
-      const Status scene_status = render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, result);
+      const Status scene_status = render_scene(scenes[i], *device, imported, roles, stops, scene_start, result);
       status = status == Status::Done ? scene_status : status;
     }
     catch (const gltf::ImportCancelled &) {
@@ -586,8 +578,8 @@ Status render(RenderOptions options, RenderResult &result)
 }
 
 /** The options that go with --part: those of the process. */
-constexpr std::array<std::string_view, 7> options_of_part_process = {
-    "--help", "--part", "--json", "--trace", "--stop-after", "--checkpoint", "--progress"};
+constexpr std::array<std::string_view, 6> options_of_part_process = {"--help",  "--part",       "--json",
+                                                                     "--trace", "--stop-after", "--progress"};
 
 /** The options of the plan's part. \a given: those of the command line. \throws CLI::ParseError */
 RenderOptions options_of_part(const RenderOptions &given, const WorkPlan &plan, const WorkPart &part)
@@ -617,7 +609,6 @@ RenderOptions options_of_part(const RenderOptions &given, const WorkPlan &plan, 
   options.planned_scene = scene.fingerprint;
   options.part = given.part;
   options.stop_seconds = given.stop_seconds;
-  options.has_checkpoint = given.has_checkpoint;
   options.has_progress_lines = given.has_progress_lines;
   const auto absolute = [](const std::string &path) { return path.empty() ? path : fs::absolute(path).string(); };
   options.json = absolute(given.json);
@@ -648,13 +639,9 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
     }
   }
   const PartName name(given.part);
-  const WorkPlan plan = read_plan(name.plan);
+  const WorkPlan plan = read_plan(name.plan, program_name());
   if (name.index >= plan.parts.size()) {
     throw UsageError(fmt::format("--part '{}': the plan has the parts 0 to {}", given.part, plan.parts.size() - 1));
-  }
-  if (plan.program != program_name()) {
-    throw std::runtime_error(
-        fmt::format("{}: is a plan of {}, and this is {}", name.plan.string(), plan.program, program_name()));
   }
   const RenderOptions options = options_of_part(given, plan, plan.parts[name.index]);
   fs::current_path(fs::absolute(name.plan).parent_path() / plan.folder);
@@ -695,7 +682,7 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
 {
   const Clock::time_point start = Clock::now();
   scene::Scene scene = import_scene(options.scene, options.import_options());
-  MeasuredScene measured{planned_fingerprint(scene, options.world), {}};
+  MeasuredScene measured{content_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
   frames.choose_animations(scene);
   frames.pose(scene, 0);

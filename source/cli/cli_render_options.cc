@@ -80,16 +80,24 @@ void check_exclusions(const CLI::App &command)
   }
 }
 
-std::string exclusions_text()
-{
-  std::string text = "Options that do not go together:";
-  for (const Exclusion &exclusion : exclusions()) {
-    text += "\n  " + exclusion.sentence;
-  }
-  return text + "\n  " + part_sentence + "\n  " + checkpoint_sentence + "\n  " + noise_sentence;
-}
-
 }  // namespace
+
+std::string exclusions_text(const CLI::App &command)
+{
+  std::vector<std::string> sentences = {part_sentence, checkpoint_sentence, noise_sentence};
+  for (const Exclusion &exclusion : exclusions()) {
+    sentences.push_back(exclusion.sentence);
+  }
+  std::string text = "Options that do not go together:";
+  for (const std::string &sentence : sentences) {
+    bool has_all = true;
+    for (std::size_t at = 0; (at = sentence.find("--", at)) != sentence.npos; at++) {
+      has_all &= command.get_option_no_throw(sentence.substr(at, sentence.find_first_of(" ,.", at) - at)) != nullptr;
+    }
+    text += has_all ? "\n  " + sentence : "";
+  }
+  return text;
+}
 
 /** Two numbers from 0 with \a separator between them. Empty for any other text. */
 static std::optional<glm::ivec2> parse_pair(std::string_view text, char separator)
@@ -431,7 +439,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   add_part_and_choice_options(command, options);
   add_report_options(command, options);
   add_farm_options(command, options);
-  command.footer(exclusions_text());
+  command.footer(exclusions_text(command));
   command.parse_complete_callback([&options, &command, samples] {
     check_exclusions(command);
     options.settings_text = settings_text(command);

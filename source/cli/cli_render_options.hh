@@ -112,6 +112,9 @@ inline constexpr std::array process_options = {
     "--output", "--tile",    "--sample-range", "--resume",     "--repeat",     "--redraw-shadows", "--json",
     "--trace",  "--explain", "--part",         "--stop-after", "--checkpoint", "--progress",       "--backend"};
 
+/** The sentences about options that do not go together, for the help of a command that has all that they name. */
+[[nodiscard]] std::string exclusions_text(const CLI::App &command);
+
 /** Adds the options to \a command, which fills \a options. Both must outlive the parsing. */
 void add_render_options(CLI::App &command, RenderOptions &options);
 

@@ -2,6 +2,7 @@
 #include "cli_work_plan.hh"
 
 #include "cli.hh"
+#include "cli_exr_part.hh"
 #include "cli_fingerprint.hh"
 #include "cli_frames.hh"
 #include "cli_output.hh"
@@ -117,15 +118,33 @@ static FrameSequence frames_of(const WorkPlan &plan, const WorkPart &part, const
   return FrameSequence({.range = part.frames, .step = plan.frame_step}, output);
 }
 
-WorkPlan read_plan(const std::filesystem::path &path)
+Metadata planned_metadata(const std::string &id, const std::string &name)
 {
+  return {{plan_metadata, id}, {planned_file_metadata, name}};
+}
+
+std::string planned_fault(const Metadata &metadata, const std::string &id, const std::string &name)
+{
+  if (metadata_value(metadata, plan_metadata) != id) {
+    return "is not of this plan";
+  }
+  const std::string planned = metadata_value(metadata, planned_file_metadata);
+  if (planned != name) {
+    return fmt::format("is a copy of '{}' under another name", planned);
+  }
+  return metadata_value(metadata, checksum_metadata).empty() ? "is damaged: it has no checksum" : "";
+}
+
+WorkPlan read_plan(const std::filesystem::path &path, const std::string &program)
+{
+  WorkPlan plan;
   try {
     std::ifstream file(path);
     if (!file) {
       throw std::runtime_error("cannot be read");
     }
     const json document = json::parse(file);
-    WorkPlan plan = from_json(document);
+    plan = from_json(document);
     if (document.at("id") != plan.id()) {
       throw std::runtime_error("was edited after `gnomon plan` wrote it");
     }
@@ -137,11 +156,14 @@ WorkPlan read_plan(const std::filesystem::path &path)
         static_cast<void>(frames_of(plan, part, output));
       }
     }
-    return plan;
   }
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: not a plan: {}", path.string(), error.what()));
   }
+  if (plan.program != program) {
+    throw std::runtime_error(fmt::format("{}: is a plan of {}, and this is {}", path.string(), plan.program, program));
+  }
+  return plan;
 }
 
 void write_plan(const std::filesystem::path &path, const WorkPlan &plan)

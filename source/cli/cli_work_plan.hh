@@ -15,8 +15,14 @@
  */
 namespace gnomon::cli {
 
-/** Metadata of a picture or of a part of one: WorkPlan::id. */
+/** Metadata of a picture or of a part of one: WorkPlan::id, and its name in the plan, which no other file of it has. */
 inline constexpr const char *plan_metadata = "gnomon:plan";
+inline constexpr const char *planned_file_metadata = "gnomon:plan_file";
+
+/** These metadata of the file \a name of the plan \a id. */
+[[nodiscard]] Metadata planned_metadata(const std::string &id, const std::string &name);
+/** The reason why a file with \a metadata is not the file \a name of the plan \a id; empty: it is. */
+[[nodiscard]] std::string planned_fault(const Metadata &metadata, const std::string &id, const std::string &name);
 
 /** One process's share: frames of a scene, or a part of one picture. */
 struct WorkPart {
@@ -97,8 +103,11 @@ struct WorkOfScene {
  */
 double add_parts(WorkPlan &plan, const WorkOfScene &work, double target_seconds);
 
-/** \throws std::runtime_error naming the file and the reason: unreadable, or edited since it was written */
-[[nodiscard]] WorkPlan read_plan(const std::filesystem::path &path);
+/**
+ * \a program: program_name() of the caller. \throws std::runtime_error naming the file and the reason: unreadable,
+ * edited since it was written, or of another program
+ */
+[[nodiscard]] WorkPlan read_plan(const std::filesystem::path &path, const std::string &program);
 /** \throws std::runtime_error naming the file, also if a text is not UTF-8 */
 void write_plan(const std::filesystem::path &path, const WorkPlan &plan);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // EXR pictures of other windows, layers and numbers than those that the program writes.
+#include "cli_exr_part.hh"
 #include "cli_process.hh"
 #include "cli_values.hh"
 
@@ -17,6 +18,7 @@
 #include <bit>
 #include <fstream>
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 namespace gnomon {
@@ -273,6 +275,56 @@ TEST_F(ExrPictureTest, HaveALimitOfPixelsThatAreNotStored)
   EXPECT_NE(error_of("a.exr").find("has 4096x4097 pixels in its display window, and 4x2 in its data window"),
             std::string::npos)
       << error_of("a.exr");
+}
+
+/** Noise, which deflate cannot shorten, so that its chunks have no checksum of their own, and equal values. */
+cli::ExrPart part_of_noise()
+{
+  cli::ExrPart part{{7, 22}, {5, 19}, {2, 1}, {}, {{"gnomon:scene", "s.gltf"}, {"gnomon:samples", "2"}}};
+  std::mt19937 random(1);
+  for (const char *name : {"R", "G", "B"}) {
+    for (int i = 0; i < part.size_px.x * part.size_px.y; i++) {
+      part.channels[name].push_back(std::bit_cast<float>(std::uint32_t(random() % 0x7f000000U)));
+    }
+  }
+  part.channels["A"].assign(part.channels["R"].size(), 1.0F);
+  return part;
+}
+
+TEST_F(ExrPictureTest, AFlippedBitOfEachByteOfAPartIsNamedOrChangesNothing)
+{
+  cli::write_exr_part(folder / "a.exr", part_of_noise());
+  const cli::ExrPart whole = cli::read_exr_part(folder / "a.exr");
+  EXPECT_EQ(whole.channels, part_of_noise().channels);
+  const std::string bytes = read("a.exr");
+  std::vector<std::string> unnoticed;
+  for (std::size_t i = 0; i < bytes.size(); i++) {
+    std::string flipped = bytes;
+    flipped[i] = char(flipped[i] ^ (1 << (i * 3 % 8)));
+    write("a.exr", flipped);
+    try {
+      const cli::ExrPart part = cli::read_exr_part(folder / "a.exr");
+      // The name of the checksum itself.
+      const bool is_without = cli::metadata_value(part.metadata, cli::checksum_metadata).empty();
+      if (part.whole_size_px != whole.whole_size_px || part.size_px != whole.size_px ||
+          part.first_px != whole.first_px || part.channels != whole.channels ||
+          (part.metadata != whole.metadata && !is_without)) {
+        unnoticed.push_back(std::to_string(i));
+      }
+    }
+    catch (const std::runtime_error &error) {
+      EXPECT_EQ(std::string(error.what()).rfind((folder / "a.exr").string() + ": ", 0), 0U) << error.what();
+    }
+  }
+  EXPECT_EQ(unnoticed, std::vector<std::string>()) << "of " << bytes.size() << " bytes";
+}
+
+TEST_F(ExrPictureTest, APartWithoutAChecksumIsRead)
+{
+  write_channels("a.exr", spec, {"R", "G", "B"});
+  const cli::ExrPart part = cli::read_exr_part(folder / "a.exr");
+  EXPECT_EQ(cli::metadata_value(part.metadata, cli::checksum_metadata), "");
+  EXPECT_EQ(part.channels.at("G"), std::vector<float>(8, 2.0F));
 }
 
 TEST(WorldRadiances, AreClampedWithNumberAndPlace)

@@ -52,8 +52,44 @@ TEST(SceneFingerprint, IsThatOfTheContent)
   expect_other(scene.meshes().first(), [](scene::Mesh &mesh) { mesh.positions[0].x = 0.5F; });
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.parent_from_node[3].x = 1e-9; });
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.is_visible = false; });
+  // Of mattes.
+  expect_other(scene.nodes().first(), [](scene::Node &node) { node.name = "other"; });
   expect_other(scene.lamps().first(), [](scene::Lamp &lamp) { lamp.shadow.bias = 2.0F; });
   expect_other(scene.cameras().first(), [](scene::Camera &camera) { camera.near = 0.2F; });
+}
+
+/** An animation of these moves or shows other things. */
+TEST(SceneFingerprint, IsThatOfAllFramesOfAnAnimation)
+{
+  const auto expect_others = [](const scene::Scene &scene, const auto &change) {
+    scene::Scene edited = scene;
+    change(edited);
+    EXPECT_NE(scene_fingerprint(edited), scene_fingerprint(scene));
+  };
+  scene::Scene scene = small_scene();
+  const auto parent = scene.add(scene::Node{});
+  expect_others(scene, [&](scene::Scene &edited) { edited.set_parent(edited.nodes().first(), parent); });
+  const auto material = scene.add(scene::Material(scene.materials()[scene.materials().first()]));
+  expect_others(scene, [&](scene::Scene &edited) {
+    edited.edit(edited.meshes().first(), [&](scene::Mesh &mesh) { mesh.material = material; });
+  });
+  const auto hidden = scene.add(scene::Lamp{});
+  scene.add(scene::Node{.lamp = hidden, .is_visible = false});
+  expect_others(scene,
+                [&](scene::Scene &edited) { edited.edit(hidden, [](scene::Lamp &lamp) { lamp.intensity = 3.0F; }); });
+  const auto track = std::make_shared<const scene::Track>(scene::Track{.times = {0.0F}, .values = {1.0F}});
+  scene::AnimatedNode animated;
+  animated.node = parent;
+  scene.animations.push_back({"a", {animated}, {}});
+  expect_others(scene, [&](scene::Scene &edited) { edited.animations[0].nodes[0].weights_track = track; });
+  expect_others(scene, [&](scene::Scene &edited) { edited.animations[0].nodes.push_back(animated); });
+  scene::DeformedMesh deformed;
+  deformed.mesh = scene.meshes().first();
+  deformed.node = parent;
+  deformed.weights = {0.0};
+  scene.deformed_meshes.push_back(deformed);
+  expect_others(scene, [](scene::Scene &edited) { edited.deformed_meshes[0].weights[0] = 1.0; });
+  expect_others(scene, [](scene::Scene &edited) { edited.deformed_meshes[0].has_flat_normals = true; });
 }
 
 /** A file with an external buffer, whose name must be encoded in a URI. */

@@ -42,6 +42,19 @@ TEST_F(CliTest, HelpAndVersionSucceed)
   EXPECT_EQ(run("--version").out, "gnomon 0.1.0\n");
 }
 
+TEST_F(CliTest, HelpOfAPlanNamesItsOwnOptionsOnly)
+{
+  const std::string help = run("plan --help").out;
+  const std::size_t footer = help.find("Options that do not go together:");
+  ASSERT_NE(footer, std::string::npos) << help;
+  EXPECT_NE(help.find("--debug excludes --aov.", footer), std::string::npos) << help;
+  for (std::size_t at = footer; (at = help.find("--", at)) != help.npos; at++) {
+    const std::string option = help.substr(at, help.find_first_of(" ,.", at) - at);
+    EXPECT_LT(help.find("  " + option + " "), footer) << option;
+  }
+  EXPECT_NE(run("merge --help").out.find("gnomon plan"), std::string::npos);
+}
+
 TEST_F(CliTest, StartsWithoutTheHundredsOfLibrariesOfAnImageLibrary)
 {
   // The loader lists all libraries, those of libraries too, and runs nothing.

@@ -142,7 +142,7 @@ TEST(WorkPlanTest, FramesOfAPlanAreChecked)
                       .frame_step = step,
                       .parts = {{.scene = 0, .frames = frames, .output = "f_#.exr"}}});
     try {
-      static_cast<void>(read_plan(path));
+      static_cast<void>(read_plan(path, "gnomon"));
       ADD_FAILURE() << frames << ' ' << step;
     }
     catch (const std::runtime_error &error) {
@@ -182,7 +182,7 @@ TEST(WorkPlanTest, APlanIsReadAsItWasWrittenAndRefusedWhenEdited)
                           10.0);
   plan.arguments = {"--size=8x8", "--strict"};
   write_plan(path, plan);
-  const WorkPlan read = read_plan(path);
+  const WorkPlan read = read_plan(path, "gnomon");
   EXPECT_EQ(read.id(), plan.id());
   EXPECT_EQ(read.arguments, plan.arguments);
   ASSERT_EQ(read.parts.size(), plan.parts.size());
@@ -195,7 +195,7 @@ TEST(WorkPlanTest, APlanIsReadAsItWasWrittenAndRefusedWhenEdited)
     edited.replace(edited.find(before), std::string(before).size(), after);
     std::ofstream(path) << edited;
     try {
-      static_cast<void>(read_plan(path));
+      static_cast<void>(read_plan(path, "gnomon"));
       ADD_FAILURE() << after;
     }
     catch (const std::runtime_error &error) {
