@@ -208,6 +208,28 @@ TEST_F(DistantMaskGpuTest, CoversItsShareWherePixelsAreAsLargeAsItsPattern)
   }
 }
 
+TEST_F(DistantMaskGpuTest, TheEdgeOfAShapeIsSharp)
+{
+  // 1.2 to 1.8 texels in a pixel.
+  for (const std::uint32_t width : {48U, 60U, 72U}) {
+    scene = {};
+    Bytes texels;
+    for (std::uint32_t i = 0; i < width * width; i++) {
+      const Bytes texel = i % width < width / 3 ? Bytes{0, 200, 0, 255} : Bytes{255, 0, 0, 0};
+      texels.insert(texels.end(), texel.begin(), texel.end());
+    }
+    add(add_textured(width, texels), {0, 0, 0});
+    scene.edit(scene.textures().first(), [&](scene::Texture &texture) { texture.mip = scene::MipFilter::Linear; });
+    test::edit_material(scene, 0, [](scene::Material &material) { material.is_unlit = true; });
+    const Picture picture = render({.sample_count = 1});
+    for (int x = 16; x < 48; x++) {
+      for (int y = 17; y < 48; y++) {
+        EXPECT_EQ(picture.at(x, y).a, picture.at(x, 16).a) << width << ' ' << x << ' ' << y;
+      }
+    }
+  }
+}
+
 TEST_F(DistantMaskGpuTest, WithoutMipLevelsIsThatOfItsTexels)
 {
   add_leaf(scene::MipFilter::None);
