@@ -24,6 +24,8 @@ TEXTS = {
     "world": ["0.5,1,2", "2,1,0.5", "studio", "sky.exr"],
     "background": ["world", "0.25,0.5,1", "1,1,1", "none"],
     "animation": ["turn", "move"],
+    "aperture": ["0", "0.125", "0.5"],
+    "focus": ["0", "3", "8.5"],
 }
 # What parts of a picture cannot have, and what makes or names the parts.
 LEFT_OUT = {"output", "size", "noise-threshold", "debug", "aov", "world-layer", "frames", "step", "resume", "sample-range", "tile", "max-error",
@@ -37,7 +39,8 @@ def settings_of(program):
     status, text, _ = program.run("render", "--help")
     expect(status == 0, "no help")
     draws = {}
-    for name, kind in re.findall(r"^  (?:-\w,)?--([\w-]+)(?: (.*?))?(?:  .*)?$", text.decode(), re.M):
+    options = text.decode().split("\nOptions that do not go together")[0]
+    for name, kind in re.findall(r"^  (?:-\w,)?--([\w-]+)(?: (.*?))?(?:  .*)?$", options, re.M):
         if name in LEFT_OUT or name in HARMLESS or name == "help":
             continue
         words = re.search(r"{(.*?)}", kind)
@@ -89,6 +92,7 @@ def write_scene(path, color):
     json = gltf.json
     json["extensionsUsed"] = ["KHR_materials_variants", "KHR_lights_punctual"]
     json["nodes"][0]["name"] = "near"
+    json["cameras"][0] = {"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}
     json["nodes"][1]["scale"] = [0.7, 0.7, 0.7]
     gltf.node(camera=0, name="far", translation=[0.25, 0, 20])
     gltf.node(translation=[1, 1, 2], extensions={"KHR_lights_punctual": {"light": 0}})
@@ -114,7 +118,7 @@ def check(program, random, of):
         write_picture(f"{folder}/{sky}", numpy.full((4, 8, 3), radiance))
     draws = settings_of(program)
     if not of["frame"]:
-        for name in ("fps", "animation"):
+        for name in ("fps", "animation", "shutter"):
             del draws[name]
     first = {name: draws[name](random) for name in random.sample(sorted(draws), of["count"])}
     first.setdefault("samples", "4")
