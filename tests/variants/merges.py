@@ -126,6 +126,9 @@ def check(program, random, of):
         first["world"] = "sky.exr"
     if of["frame"]:
         first.setdefault("animation", "turn")
+    if of["change"] == "scene":
+        # Variants have materials of their own, which stay.
+        first.pop("variant", None)
     second = dict(first)
     change = of["change"]
     what = change
