@@ -71,8 +71,8 @@ class TwoViewports {
   {
     const std::array<draw::Engine *, 1> engines = {&engine_};
     render_scene_.update();
+    // Restarts the picture if an edit changes it, and only then.
     viewport.sync(engines, render_scene_.objects());
-    viewport.restart();
     while (viewport.samples_drawn() < engine_.settings().drawn_sample_count()) {
       viewport.draw(engines, view_of(camera, single_edits_size_px));
     }
