@@ -364,7 +364,7 @@ Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scen
   return is_finite ? status : Status::NonFinite;
 }
 
-/** What the options ask of a scene. */
+/** The camera and the background that the options ask for. */
 struct PreparedScene {
   scene::PlacedCamera camera;
   eevee::Background background;

@@ -163,7 +163,7 @@ class CameraRays {
   double aperture_rotation_;
   double aperture_ratio_;
   glm::dvec2 half_size_{1.0};
-  /** Of the image, on the plane at a distance of 1 where perspective. */
+  /** The middle of the image: on the plane at a distance of 1 where perspective. */
   glm::dvec2 middle_{0.0};
 };
 

@@ -39,8 +39,8 @@ void check(const scene::PlacedCamera &camera)
   if (!std::isfinite(camera.shift_x + camera.shift_y)) {
     refuse(fmt::format("shift of {} and {} is not finite", camera.shift_x, camera.shift_y));
   }
-  // Of the rays through the edge of the aperture to the middle of the plane in focus, whose products with the
-  // projection must be finite.
+  // The limit keeps products finite: those of the projection with the slope of a ray from the edge of the aperture to
+  // the middle of the plane in focus.
   constexpr float slope_max = 1e25F;
   const float reach = camera.aperture_radius / std::min(camera.aperture_ratio, 1.0F);
   const float slope = camera.focus_distance == 0.0F ? 0.0F : reach / camera.focus_distance;
@@ -80,7 +80,7 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
   const float frame_aspect = !is_perspective        ? std::abs(camera.half_width / camera.half_height)
                              : camera.aspect > 0.0F ? camera.aspect
                                                     : image_aspect;
-  // Of the middle of the frame, which may be narrower than the image.
+  // The middle of the frame, which may be narrower than the image, at distance 1 where perspective.
   const glm::vec2 shift = 2.0F * half_height * glm::vec2(frame_aspect * camera.shift_x, camera.shift_y);
   if (image_aspect < frame_aspect) {
     half_height *= frame_aspect / image_aspect;

@@ -19,7 +19,7 @@ inline constexpr std::uint64_t exr_value_count_max = std::uint64_t(1) << 30U;
 
 /** A hash of a file's headers, and its checksum. */
 struct HeaderScan {
-  /** Of all bytes of the headers but the value of the checksum. */
+  /** A hash of all bytes of the headers but the value of the checksum. */
   std::uint64_t hash = 0;
   /** Position of the checksum's value in the file, bytes. */
   std::uint64_t checksum_at = 0;

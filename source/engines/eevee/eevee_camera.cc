@@ -24,19 +24,6 @@ draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::
   return {view.view_from_world(), clip_from_view, view.lens()};
 }
 
-/** \a place of the unit square on the unit disk: squares become rings (Shirley and Chiu 1997). */
-static glm::vec2 on_disk(glm::vec2 place)
-{
-  const glm::vec2 at = 2.0F * place - 1.0F;
-  if (at.x == 0.0F && at.y == 0.0F) {
-    return at;
-  }
-  const bool is_along_x = std::abs(at.x) > std::abs(at.y);
-  const float radius = is_along_x ? at.x : at.y;
-  const float angle = is_along_x ? 0.25F * pi_v<float> * at.y / at.x : pi_v<float> * (0.5F - 0.25F * at.x / at.y);
-  return radius * glm::vec2(std::cos(angle), std::sin(angle));
-}
-
 /** \a place of the unit square in the regular polygon around the origin, whose corners are on the unit circle. */
 static glm::vec2 on_polygon(glm::vec2 place, int corner_count, float rotation)
 {
@@ -52,7 +39,7 @@ static glm::vec2 on_polygon(glm::vec2 place, int corner_count, float rotation)
 
 glm::vec2 lens_point(const draw::Lens &lens, glm::vec2 place)
 {
-  const glm::vec2 point = lens.blades == 0 ? on_disk(place) : on_polygon(place, lens.blades, lens.rotation);
+  const glm::vec2 point = lens.blades == 0 ? glm::vec2(on_disk(place)) : on_polygon(place, lens.blades, lens.rotation);
   return lens.radius * glm::vec2(point.x / lens.ratio, point.y);
 }
 
@@ -80,12 +67,12 @@ draw::View view_around_lens(const draw::View &view)
     return {view.view_from_world(), view.clip_from_view()};
   }
   // At the distance d, half the view is s d wide, with the slope s. Through a point x of the lens, it is moved by
-  // x (1 - d / focus). A view whose eye is b = max(x) / min(s) behind contains all, with a slope of s + max(x) / focus.
+  // x (1 - d / focus). A view whose eye is max(x) / min(s) behind contains all, with a slope of s + max(x) / focus.
   const glm::mat4 &clip_from_view = view.clip_from_view();
-  const glm::vec2 reach = lens.radius * glm::vec2(1.0F / std::min(lens.ratio, 1.0F));
+  const float reach = lens.radius / std::min(lens.ratio, 1.0F);
   const glm::vec2 slope(1.0F / clip_from_view[0][0], 1.0F / clip_from_view[1][1]);
   const glm::vec2 wide = slope + reach / lens.focus_distance;
-  const float back = std::max(reach.x, reach.y) / std::min(slope.x, slope.y);
+  const float back = reach / std::min(slope.x, slope.y);
   // Reversed depth: z / w is a + b / distance.
   const float a = -clip_from_view[2][2];
   const float b = clip_from_view[3][2];

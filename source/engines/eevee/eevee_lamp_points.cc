@@ -27,19 +27,6 @@ double half_angle(const scene::Lamp &lamp)
   return std::min(0.5 * double(lamp.angle), 0.5 * pi);
 }
 
-/** Area-preserving map from xy of \a place in [0, 1)² to the unit disk (Shirley and Chiu 1997). */
-glm::dvec2 on_disk(const glm::vec3 &place)
-{
-  const glm::dvec2 square = 2.0 * glm::dvec2(place) - 1.0;
-  if (square.x == 0.0 && square.y == 0.0) {
-    return {0.0, 0.0};
-  }
-  const bool is_wide = std::abs(square.x) > std::abs(square.y);
-  const double radius = is_wide ? square.x : square.y;
-  const double angle = is_wide ? 0.25 * pi * (square.y / square.x) : 0.5 * pi - 0.25 * pi * (square.x / square.y);
-  return {radius * std::cos(angle), radius * std::sin(angle)};
-}
-
 /** An orthonormal basis whose third vector is the unit vector \a z. */
 glm::dmat3 axes_around(const glm::dvec3 &z)
 {
@@ -51,7 +38,7 @@ glm::dmat3 axes_around(const glm::dvec3 &z)
 /** A point in the unit ball with a density ∝ (1 - ρ²)^(-1/2): uniform on the disk in xy, arcsine-distributed in z. */
 glm::dvec3 in_ball(const glm::vec3 &place)
 {
-  const glm::dvec2 disk = on_disk(place);
+  const glm::dvec2 disk = on_disk(glm::dvec2(place));
   const double half_chord = std::sqrt(std::max(1.0 - glm::dot(disk, disk), 0.0));
   return {disk, half_chord * std::sin(pi * (double(place.z) - 0.5))};
 }
@@ -90,7 +77,7 @@ bool has_extent(const scene::Lamp &lamp)
 glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const glm::vec3 &toward_ws)
 {
   if (lamp.kind == scene::LampKind::Sun) {
-    const glm::dvec2 disk = on_disk(place);
+    const glm::dvec2 disk = on_disk(glm::dvec2(place));
     const double radius_sq = glm::dot(disk, disk);
     const double sine = std::sin(0.5 * half_angle(lamp));
     const double drop = 2.0 * sine * sine * radius_sq;
@@ -103,7 +90,7 @@ glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const 
   glm::dmat4 moved = lamp.world_from_lamp;
   if (lamp.kind == scene::LampKind::Area) {
     const glm::dvec2 across =
-        lamp.area_shape == scene::AreaShape::Ellipse ? on_disk(place) : 2.0 * glm::dvec2(place) - 1.0;
+        lamp.area_shape == scene::AreaShape::Ellipse ? on_disk(glm::dvec2(place)) : 2.0 * glm::dvec2(place) - 1.0;
     moved[3] = moved * glm::dvec4(scene::area_half_size(lamp) * across, 0.0, 1.0);
     return moved;
   }

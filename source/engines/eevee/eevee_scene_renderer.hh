@@ -102,8 +102,8 @@ class SceneRenderer {
    */
   int draw(const scene::PlacedCamera &camera, const DrawLimits &limits = {}, const draw::Target &target = {});
   /**
-   * As draw, with motion blur: \a pose is called before each sample, may edit the scene, and gives the camera. Syncs
-   * before each sample. The samples are spread evenly over the time of the shutter.
+   * Draw a picture with motion blur, otherwise as draw. Before each sample, this function calls \a pose, which may edit
+   * the scene and returns the camera, and syncs. The samples are spread evenly over the time of the shutter.
    */
   int draw_moving(const Pose &pose, const DrawLimits &limits = {}, const draw::Target &target = {});
   /**

@@ -4,6 +4,8 @@
 #include "eevee_sequence_shared.h"
 
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace gnomon::eevee {
 
@@ -57,6 +59,19 @@ glm::vec3 sobol_point(std::uint32_t index, std::uint32_t seed)
   return {to_unit(scrambled(reversed_bits(shuffled), seed_of(1))),
           to_unit(scrambled(sobol(shuffled, second), seed_of(2))),
           to_unit(scrambled(sobol(shuffled, third), seed_of(3)))};
+}
+
+glm::dvec2 on_disk(const glm::dvec2 &place)
+{
+  constexpr double pi = std::numbers::pi;
+  const glm::dvec2 square = 2.0 * place - 1.0;
+  if (square.x == 0.0 && square.y == 0.0) {
+    return {0.0, 0.0};
+  }
+  const bool is_wide = std::abs(square.x) > std::abs(square.y);
+  const double radius = is_wide ? square.x : square.y;
+  const double angle = is_wide ? 0.25 * pi * (square.y / square.x) : 0.5 * pi - 0.25 * pi * (square.x / square.y);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
 }  // namespace gnomon::eevee

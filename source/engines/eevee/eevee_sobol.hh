@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -16,5 +17,8 @@ namespace gnomon::eevee {
  * B. Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020. Direction numbers: S. Joe and F. Y. Kuo, 2008.
  */
 [[nodiscard]] glm::vec3 sobol_point(std::uint32_t index, std::uint32_t seed);
+
+/** Area-preserving map from \a place in [0, 1)² to the unit disk (Shirley and Chiu 1997). */
+[[nodiscard]] glm::dvec2 on_disk(const glm::dvec2 &place);
 
 }  // namespace gnomon::eevee

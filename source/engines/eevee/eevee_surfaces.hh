@@ -103,7 +103,7 @@ class SurfacePasses {
   };
   /** Make the groups for the objects of the kind of \a first. */
   Kind record_kind(const Recording &recording, draw::ObjectIndex first);
-  /** What the passes of Inspection need of the objects of a kind. */
+  /** Inputs of the passes of Inspection for the objects of a kind. */
   struct Inspected {
     render_scene::MaterialClass surface = render_scene::MaterialClass::Plain;
     render_scene::TextureSet textures{};
