@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Limits of EXR files: OpenEXR allocates what a header states before it reads it. Checksums of headers and pixels.
+// Limits of EXR files: OpenEXR allocates what a header states before it reads it. Checksums of files.
 #include "internal/cli_exr_file.hh"
 #include "internal/cli_picture_formats.hh"
 
 #include "cli_exr_part.hh"
 
 #include <ImfChannelList.h>
+#include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 #include <ImfVersion.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <fstream>
 #include <vector>
 
@@ -22,82 +22,77 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** The numbers, names and values of a file's headers, in its order, and a hash of them. */
+/** The numbers, names and values of a file's headers, in its order. */
 class HeaderReader {
  public:
-  HeaderReader(std::istream &stream, std::uint64_t file_bytes) : stream_(stream), file_bytes_(file_bytes) {}
+  HeaderReader(const ReadBytes &read, std::uint64_t file_bytes) : read_(read), file_bytes_(file_bytes) {}
 
   std::uint32_t number()
   {
-    std::array<unsigned char, 4> bytes{};
-    stream_.read(reinterpret_cast<char *>(bytes.data()), bytes.size());
-    check();
-    add(bytes.data(), bytes.size());
-    return bytes[0] | unsigned(bytes[1]) << 8U | unsigned(bytes[2]) << 16U | unsigned(bytes[3]) << 24U;
+    std::array<char, 4> bytes{};
+    read(bytes.data(), bytes.size());
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < bytes.size(); i++) {
+      value |= std::uint32_t(static_cast<unsigned char>(bytes[i])) << 8U * i;
+    }
+    return value;
   }
 
   std::string name()
   {
     constexpr std::size_t length_max = 255;
     std::string text;
-    for (char c = 0; stream_.get(c) && c != '\0' && text.size() <= length_max;) {
+    char c = 0;
+    for (read(&c, 1); c != '\0' && text.size() <= length_max; read(&c, 1)) {
       text += c;
     }
-    check();
     if (text.size() > length_max) {
       throw std::runtime_error("has a header that is damaged");
     }
-    add(text.c_str(), text.size() + 1);
     return text;
   }
 
   void value(const std::string &name, std::uint32_t bytes)
   {
-    const auto at = std::uint64_t(stream_.tellg());
-    if (bytes > file_bytes_ - std::min(at, file_bytes_)) {
+    if (bytes > file_bytes_ - position_) {
       throw std::runtime_error(
           fmt::format("is cut off: its attribute '{}' has {} bytes, and the file has {}", name, bytes, file_bytes_));
     }
     const bool is_checksum = name == checksum_metadata;
     if (is_checksum) {
-      scan_.checksum_at = at;
-      scan_.checksum.clear();
+      checksum_ = {.position = position_};
     }
     std::array<char, 4096> block;
     for (std::uint32_t left = bytes; left > 0;) {
       const std::uint32_t size = std::min(left, std::uint32_t(block.size()));
-      stream_.read(block.data(), size);
-      check();
+      read(block.data(), size);
       left -= size;
       if (is_checksum) {
-        scan_.checksum.append(block.data(), size);
-      }
-      else {
-        add(block.data(), size);
+        checksum_.text.append(block.data(), size);
       }
     }
   }
 
-  [[nodiscard]] const HeaderScan &scan() const
+  [[nodiscard]] const StoredChecksum &checksum() const
   {
-    return scan_;
+    return checksum_;
   }
 
  private:
-  void check()
+  void read(char *bytes, std::size_t size)
   {
-    if (!stream_) {
+    if (size > file_bytes_ - position_) {
       throw std::runtime_error("is cut off in its header");
     }
-  }
-  void add(const void *bytes, std::size_t size)
-  {
-    scan_.hash = XXH3_64bits_withSeed(bytes, size, scan_.hash);
+    read_(bytes, size);
+    position_ += size;
   }
 
-  std::istream &stream_;
+  const ReadBytes &read_;
   std::uint64_t file_bytes_;
-  HeaderScan scan_;
+  /** Bytes that were read. */
+  std::uint64_t position_ = 0;
+  StoredChecksum checksum_;
 };
 
 /** Bytes of pixels that a stored byte can stand for, rounded up. */
@@ -125,9 +120,9 @@ std::uint64_t largest_ratio(Imf::Compression compression)
 
 }  // namespace
 
-HeaderScan scan_headers(std::istream &stream, std::uint64_t file_bytes)
+StoredChecksum scan_headers(const ReadBytes &read, std::uint64_t file_bytes)
 {
-  HeaderReader reader(stream, file_bytes);
+  HeaderReader reader(read, file_bytes);
   if (reader.number() != std::uint32_t(Imf::MAGIC)) {
     throw std::runtime_error("is no EXR file");
   }
@@ -144,58 +139,47 @@ HeaderScan scan_headers(std::istream &stream, std::uint64_t file_bytes)
       break;
     }
   } while (has_parts);
-  return reader.scan();
+  return reader.checksum();
 }
 
-std::string header_checksum(const HeaderScan &scan)
+std::string file_checksum(const ReadBytes &read, std::uint64_t file_bytes, const StoredChecksum &stored)
 {
-  return fmt::format("{:016x}", scan.hash);
-}
-
-std::string pixel_checksum(const Imath::Box2i &window, const Imf::FrameBuffer &pixels)
-{
-  std::vector<float> row(std::size_t(window.max.x - window.min.x) + 1);
   std::uint64_t hash = 0;
-  for (auto channel = pixels.begin(); channel != pixels.end(); ++channel) {
-    const Imf::Slice &slice = channel.slice();
-    for (int y = window.min.y; y <= window.max.y; y++) {
-      // The address of pixel (0, 0) may be outside of the values, and strides may be negative.
-      auto address = reinterpret_cast<std::uintptr_t>(slice.base) + slice.yStride * std::size_t(y) +
-                     slice.xStride * std::size_t(window.min.x);
-      const void *values = reinterpret_cast<const void *>(address);
-      if (slice.xStride != sizeof(float)) {
-        for (float &value : row) {
-          std::memcpy(&value, reinterpret_cast<const void *>(address), sizeof(value));
-          address += slice.xStride;
-        }
-        values = row.data();
-      }
-      hash = XXH3_64bits_withSeed(values, row.size() * sizeof(float), hash);
+  std::vector<char> block(std::size_t(1) << 16U);
+  const auto add = [&](std::uint64_t bytes) {
+    while (bytes > 0) {
+      const auto size = std::size_t(std::min(bytes, std::uint64_t(block.size())));
+      read(block.data(), size);
+      hash = XXH3_64bits_withSeed(block.data(), size, hash);
+      bytes -= size;
     }
-  }
+  };
+  add(stored.position);
+  std::string value(stored.text.size(), '\0');
+  read(value.data(), value.size());
+  add(file_bytes - stored.position - value.size());
   return fmt::format("{:016x}", hash);
 }
 
-static void check_checksum(const std::string &stated, const std::string &found, const char *what)
+/** \a stream stays the caller's. */
+static ReadBytes read_from(std::istream &stream)
 {
-  if (stated != found) {
-    throw std::runtime_error(
-        fmt::format("is damaged, or another program has changed it: the checksum of its {} differs", what));
-  }
+  return [&stream](char *bytes, std::size_t size) {
+    if (!stream.read(bytes, std::streamsize(size))) {
+      throw std::runtime_error("cannot be read to its end");
+    }
+  };
 }
 
-void ExrInput::check_headers() const
+void ExrInput::check_content() const
 {
-  if (!scan_.checksum.empty()) {
-    check_checksum(scan_.checksum.substr(std::min<std::size_t>(16, scan_.checksum.size())), header_checksum(scan_),
-                   "header");
-  }
-}
-
-void ExrInput::check_pixels(const Imf::FrameBuffer &pixels) const
-{
-  if (!scan_.checksum.empty()) {
-    check_checksum(scan_.checksum.substr(0, 16), pixel_checksum(file_->header(0).dataWindow(), pixels), "pixels");
+  std::ifstream stream(path_, std::ios::binary);
+  // OpenEXR finds the checksum behind an attribute whose size is damaged.
+  const auto *attribute = file_->header(0).findTypedAttribute<Imf::StringAttribute>(checksum_metadata);
+  const std::string stated = attribute ? attribute->value() : "";
+  if (stated != checksum_.text ||
+      (!stated.empty() && stated != file_checksum(read_from(stream), file_bytes_, checksum_))) {
+    throw std::runtime_error("is damaged, or another program has changed it: its checksum differs");
   }
 }
 
@@ -206,10 +190,10 @@ glm::ivec2 size_of_window(const Imath::Box2i &window)
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }
 
-ExrInput::ExrInput(const fs::path &path) : file_bytes_(fs::file_size(path))
+ExrInput::ExrInput(const fs::path &path) : path_(path), file_bytes_(fs::file_size(path))
 {
   std::ifstream stream(path, std::ios::binary);
-  scan_ = scan_headers(stream, file_bytes_);
+  checksum_ = scan_headers(read_from(stream), file_bytes_);
   // Rows of a file that is cut off are not looked for: such a file is refused.
   file_.emplace(path.c_str(), Imf::globalThreadCount(), false);
 }

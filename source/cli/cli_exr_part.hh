@@ -12,7 +12,7 @@ inline constexpr const char *share_metadata = "gnomon:sample_share";
 /** "A-B": the first and the last sample that it contains. */
 inline constexpr const char *range_metadata = "gnomon:sample_range";
 
-/** Hashes of a file's pixels and of the rest of its header. Files of older versions have none. */
+/** A hash of all other bytes of the file. Files of older versions have none. */
 inline constexpr const char *checksum_metadata = "gnomon:checksum";
 
 /** An EXR file with a part of a picture, or with the whole. Rows from the top, as in the file. */
@@ -31,7 +31,7 @@ enum class ExrContent { Header, All };
 
 /**
  * \throws std::runtime_error naming \a path if it is no EXR file of 32-bit floats, is cut off, exceeds the picture, or
- * has a checksum that is not its own: that of the header, and that of the pixels if they are read
+ * has a checksum that is not its own
  */
 [[nodiscard]] ExrPart read_exr_part(const std::filesystem::path &path, ExrContent content = ExrContent::All);
 /** Writes the file atomically. \throws std::runtime_error naming \a path if it cannot be written */

@@ -69,7 +69,7 @@ bool FrameSequence::is_done(int index, glm::ivec2 size_px, const std::string &pl
     if (plan_id.empty()) {
       return read_picture(file).size_px == size_px;
     }
-    const ExrPart part = read_exr_part(file);
+    const ExrPart part = read_exr_part(file, ExrContent::Header);
     return part.whole_size_px == size_px && planned_fault(part.metadata, plan_id, file.string()).empty();
   }
   catch (const std::runtime_error &) {

@@ -301,7 +301,7 @@ std::string fault_of(const std::string &path, const std::string &id)
     return path + (std::filesystem::exists(path, ignored) ? ": is no regular file" : ": is missing");
   }
   try {
-    const std::string fault = planned_fault(read_exr_part(path).metadata, id, path);
+    const std::string fault = planned_fault(read_exr_part(path, ExrContent::Header).metadata, id, path);
     return fault.empty() ? "" : path + ": " + fault;
   }
   catch (const std::runtime_error &error) {

@@ -28,6 +28,7 @@
 #include <unistd.h>
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <future>
 #include <iterator>
 #include <numeric>
@@ -692,21 +693,23 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   }
   light_by_world(scene, camera, options.world);
   eevee::SceneRenderer renderer(*device, scene, options.size_px(), options.engine_settings());
-  const auto draw_samples = [&](int count_max) {
+  const auto draw_while = [&](const std::function<bool(int drawn)> &condition) {
     renderer.sync();
-    const int count =
-        renderer.draw(find_camera(scene, options), {.progress = [count_max](int drawn) { return drawn < count_max; }});
+    const int count = renderer.draw(find_camera(scene, options), {.progress = condition});
     device->finish();
     return count;
   };
   // The driver compiles programs for the first sample of a process.
-  draw_samples(1);
+  draw_while([](int) { return false; });
   measured.cost.start_seconds = seconds_since(start);
   const Clock::time_point draw_start = Clock::now();
   // Another frame, for which shadows are drawn again.
   frames.pose(scene, frames.count() / 2);
-  constexpr int sample_count_max = 4;
-  const int sample_count = draw_samples(sample_count_max);
+  // The first samples of a frame take longer than the others.
+  constexpr int sample_count_min = 4;
+  constexpr double seconds_min = 1.0;
+  const int sample_count =
+      draw_while([&](int drawn) { return drawn < sample_count_min || seconds_since(draw_start) < seconds_min; });
   measured.cost.sample_seconds = seconds_since(draw_start) / sample_count;
   return measured;
 }

@@ -135,6 +135,24 @@ std::string planned_fault(const Metadata &metadata, const std::string &id, const
   return metadata_value(metadata, checksum_metadata).empty() ? "is damaged: it has no checksum" : "";
 }
 
+/** \throws std::exception if \a document is not what write_plan writes */
+static WorkPlan checked_plan(const json &document)
+{
+  WorkPlan plan = from_json(document);
+  if (document.at("id") != plan.id()) {
+    throw std::runtime_error("was edited after `gnomon plan` wrote it");
+  }
+  for (const WorkPart &part : plan.parts) {
+    if (part.scene >= plan.scenes.size()) {
+      throw std::runtime_error("names a scene that it does not have");
+    }
+    for (const std::string &output : {part.output, plan.scenes[part.scene].pictures}) {
+      static_cast<void>(frames_of(plan, part, output));
+    }
+  }
+  return plan;
+}
+
 WorkPlan read_plan(const std::filesystem::path &path, const std::string &program)
 {
   WorkPlan plan;
@@ -144,17 +162,10 @@ WorkPlan read_plan(const std::filesystem::path &path, const std::string &program
       throw std::runtime_error("cannot be read");
     }
     const json document = json::parse(file);
-    plan = from_json(document);
-    if (document.at("id") != plan.id()) {
-      throw std::runtime_error("was edited after `gnomon plan` wrote it");
-    }
-    for (const WorkPart &part : plan.parts) {
-      if (part.scene >= plan.scenes.size()) {
-        throw std::runtime_error("names a scene that it does not have");
-      }
-      for (const std::string &output : {part.output, plan.scenes[part.scene].pictures}) {
-        static_cast<void>(frames_of(plan, part, output));
-      }
+    document.at("program").get_to(plan.program);
+    // Plans of other versions may have other members.
+    if (plan.program == program) {
+      plan = checked_plan(document);
     }
   }
   catch (const std::exception &error) {

@@ -223,7 +223,7 @@ class Replacement {
   Replacement(const Place &place, const fs::path &path) : place_(place), path_(path)
   {
     constexpr mode_t mode = 0666;
-    constexpr int flags = O_WRONLY | O_CLOEXEC;
+    constexpr int flags = O_RDWR | O_CLOEXEC;
     int descriptor = -1;
     // A file without a name vanishes with its process. Naming it needs /proc.
     if (::access("/proc/self/fd", X_OK) == 0) {
@@ -238,7 +238,7 @@ class Replacement {
         fail(path, error);
       }
     }
-    file_.reset(::fdopen(descriptor, "w"));
+    file_.reset(::fdopen(descriptor, "w+"));
     if (!file_) {
       throw std::bad_alloc();
     }
@@ -324,7 +324,7 @@ class Replacement {
 /** Content in memory, for outputs in which positions cannot be sought. */
 class Memory {
  public:
-  Memory() : file_(::fopencookie(this, "w", {nullptr, &write, &seek, nullptr}))
+  Memory() : file_(::fopencookie(this, "w+", {&read, &write, &seek, nullptr}))
   {
     if (!file_) {
       throw std::bad_alloc();
@@ -351,6 +351,14 @@ class Memory {
   }
 
  private:
+  static ssize_t read(void *memory, char *bytes, std::size_t size)
+  {
+    auto &[content, position, file] = *static_cast<Memory *>(memory);
+    size = std::min(size, content.size() - std::min(position, content.size()));
+    std::copy_n(content.begin() + std::ptrdiff_t(position), size, bytes);
+    position += size;
+    return ssize_t(size);
+  }
   static ssize_t write(void *memory, const char *bytes, std::size_t size)
   {
     auto &[content, position, file] = *static_cast<Memory *>(memory);
@@ -447,6 +455,15 @@ void Stream::seek(std::uint64_t position)
 {
   check();
   if (::fseeko(file_, off_t(position), SEEK_SET) != 0) {
+    fail();
+  }
+}
+
+void Stream::read(void *bytes, std::size_t size)
+{
+  check();
+  errno = EIO;
+  if (std::fread(bytes, 1, size, file_) != size) {
     fail();
   }
 }

@@ -291,7 +291,7 @@ cli::ExrPart part_of_noise()
   return part;
 }
 
-TEST_F(ExrPictureTest, AFlippedBitOfEachByteOfAPartIsNamedOrChangesNothing)
+TEST_F(ExrPictureTest, AFlippedBitOfEachByteOfAPartIsNamed)
 {
   cli::write_exr_part(folder / "a.exr", part_of_noise());
   const cli::ExrPart whole = cli::read_exr_part(folder / "a.exr");
@@ -304,11 +304,8 @@ TEST_F(ExrPictureTest, AFlippedBitOfEachByteOfAPartIsNamedOrChangesNothing)
     write("a.exr", flipped);
     try {
       const cli::ExrPart part = cli::read_exr_part(folder / "a.exr");
-      // The name of the checksum itself.
-      const bool is_without = cli::metadata_value(part.metadata, cli::checksum_metadata).empty();
-      if (part.whole_size_px != whole.whole_size_px || part.size_px != whole.size_px ||
-          part.first_px != whole.first_px || part.channels != whole.channels ||
-          (part.metadata != whole.metadata && !is_without)) {
+      // Where the name of the checksum differs, the file is one without a checksum.
+      if (part.channels != whole.channels || !cli::metadata_value(part.metadata, cli::checksum_metadata).empty()) {
         unnoticed.push_back(std::to_string(i));
       }
     }

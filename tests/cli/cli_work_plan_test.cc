@@ -202,6 +202,14 @@ TEST(WorkPlanTest, APlanIsReadAsItWasWrittenAndRefusedWhenEdited)
       EXPECT_EQ(std::string(error.what()).rfind(path.string() + ": not a plan: ", 0), 0U) << error.what();
     }
   }
+  std::ofstream(path) << R"({"program": "gnomon 0.0.1"})";
+  try {
+    static_cast<void>(read_plan(path, "gnomon"));
+    ADD_FAILURE() << "a plan of another version, with other members";
+  }
+  catch (const std::runtime_error &error) {
+    EXPECT_EQ(error.what(), path.string() + ": is a plan of gnomon 0.0.1, and this is gnomon");
+  }
   std::filesystem::remove(path);
 }
 

@@ -80,9 +80,21 @@ TEST_F(OutputFileTest, PositionsCanBeSoughtInAllOutputs)
     write_file(path, [](Stream &stream) {
       stream.write("0123456789");
       EXPECT_EQ(stream.position(), 10U);
+      std::string written(8, ' ');
+      stream.seek(1);
+      stream.read(written.data(), written.size());
+      EXPECT_EQ(written, "12345678");
       stream.seek(2);
       stream.write("ab");
     });
+    EXPECT_THROW(write_file(folder / "short",
+                            [](Stream &stream) {
+                              stream.write("0123");
+                              stream.seek(1);
+                              std::string beyond(4, ' ');
+                              stream.read(beyond.data(), beyond.size());
+                            }),
+                 Error);
   }
   reader.join();
   EXPECT_EQ(read, "01ab456789");

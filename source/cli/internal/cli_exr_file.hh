@@ -8,7 +8,8 @@
 #include <ImfMultiPartInputFile.h>
 
 #include <cstdint>
-#include <istream>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -17,18 +18,22 @@ namespace gnomon::cli {
 /** Values of a part of an EXR file: pixels times channels. 8K with 32 channels have fewer. */
 inline constexpr std::uint64_t exr_value_count_max = std::uint64_t(1) << 30U;
 
-/** A hash of a file's headers, and its checksum. */
-struct HeaderScan {
-  /** A hash of all bytes of the headers but the value of the checksum. */
-  std::uint64_t hash = 0;
-  /** Position of the checksum's value in the file, bytes. */
-  std::uint64_t checksum_at = 0;
-  /** Hashes of the pixels and of the headers, 16 digits each. Empty: another program or an older version wrote it. */
-  std::string checksum{};
+/** Gives the next bytes of a file from its begin on. Throws if there are fewer. */
+using ReadBytes = std::function<void(char *bytes, std::size_t size)>;
+
+/** The value of a file's checksum. */
+struct StoredChecksum {
+  /** Its position in the file, bytes. */
+  std::uint64_t position = 0;
+  /** Empty: another program or an older version wrote the file. */
+  std::string text{};
 };
 
 /** Reads the headers of a file of \a file_bytes. \throws std::runtime_error if an attribute is longer than the file */
-[[nodiscard]] HeaderScan scan_headers(std::istream &stream, std::uint64_t file_bytes);
+[[nodiscard]] StoredChecksum scan_headers(const ReadBytes &read, std::uint64_t file_bytes);
+
+/** 16 digits: a hash of all bytes of a file of \a file_bytes but those of \a stored. */
+[[nodiscard]] std::string file_checksum(const ReadBytes &read, std::uint64_t file_bytes, const StoredChecksum &stored);
 
 /** An EXR file of a stranger. Its headers were compared with the file's length before OpenEXR read them. */
 class ExrInput {
@@ -46,24 +51,18 @@ class ExrInput {
    * its compression can store in a file of its length
    */
   void check_memory(int part) const;
-  /** \throws std::runtime_error, without the file's name, if the file has a checksum that is not that of its headers */
-  void check_headers() const;
-  /** The same for all values of its only part, which \a pixels has. */
-  void check_pixels(const Imf::FrameBuffer &pixels) const;
+  /** \throws std::runtime_error, without the file's name, if the file has a checksum that is not its own */
+  void check_content() const;
 
  private:
+  std::filesystem::path path_;
   std::uint64_t file_bytes_;
-  HeaderScan scan_;
+  StoredChecksum checksum_;
   std::optional<Imf::MultiPartInputFile> file_;
 };
 
 /** \throws std::runtime_error for too few and too many pixels. \see check_edges */
 [[nodiscard]] glm::ivec2 size_of_window(const Imath::Box2i &window);
-
-/** 16 digits. \a pixels: 32-bit floats, of which those in \a window are hashed */
-[[nodiscard]] std::string pixel_checksum(const Imath::Box2i &window, const Imf::FrameBuffer &pixels);
-/** 16 digits. */
-[[nodiscard]] std::string header_checksum(const HeaderScan &scan);
 
 /**
  * Writes the rows of \a header's data window, with \a metadata, atomically. \throws std::runtime_error naming \a path
