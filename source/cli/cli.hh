@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace gnomon::cli {
@@ -36,6 +38,19 @@ template <typename... Arguments>
 void print_message(fmt::format_string<Arguments...> format, Arguments &&...arguments)
 {
   static_cast<void>(std::fputs(fmt::format(format, std::forward<Arguments>(arguments)...).c_str(), stderr));
+}
+
+/** A check of an option: CLI::Range, which accepts "nan", without that. */
+[[nodiscard]] inline CLI::Validator number_range(double min, double max)
+{
+  return CLI::Validator(CLI::Range(min, max)) & CLI::Validator(
+                                                    [](const std::string &text) {
+                                                      double value = 0.0;
+                                                      return CLI::detail::lexical_cast(text, value) && std::isnan(value)
+                                                                 ? "is not a number: " + text
+                                                                 : std::string();
+                                                    },
+                                                    "");
 }
 
 /** Each function adds a subcommand to \a app. When the subcommand runs, it sets \a status. */

@@ -307,7 +307,7 @@ void add_bench(CLI::App &app, Status &status)
       ->check(CLI::Range(1, 100000));
   frames->add_option("--budget", o->budget_ms, "Time of a draw within a budget, milliseconds")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 10000.0));
+      ->check(number_range(0.1, 10000.0));
   add_backend_option(*frames, o->backend, "without a driver");
   frames->add_option("--json", o->json, "Write the figures, in seconds");
   add_world_options(*frames, o->world);

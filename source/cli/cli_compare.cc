@@ -130,7 +130,7 @@ void add_compare(CLI::App &app, Status &status)
   for (std::size_t i = 0; i < errors.size(); i++) {
     command
         ->add_option(errors[i].option, o->maxima[i], fmt::format("{}; above it the status is 1", errors[i].description))
-        ->check(CLI::Range(0.0, 1e30));
+        ->check(number_range(0.0, 1e30));
   }
   command->add_option("--difference", o->difference, "OUT.exr or OUT.png: the absolute difference of each value")
       ->check([](const std::string &path) {
@@ -139,7 +139,7 @@ void add_compare(CLI::App &app, Status &status)
       });
   command->add_option("--difference-scale", o->difference_scale, "Multiplies that difference")
       ->capture_default_str()
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(number_range(1e-6, 1e6));
   command->add_option("--json", o->json, "Write the errors to this file");
   command->callback([o, &status] { status = compare(*o); });
 }

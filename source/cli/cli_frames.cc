@@ -23,7 +23,7 @@ FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
   const bool has_place = name.find('#') != name.npos;
   if (!is_animated()) {
     if (has_place) {
-      throw UsageError(fmt::format("-o '{}' has a # for a frame number, which needs --frames", name));
+      throw UsageError(fmt::format("'{}' has a # for a frame number, which needs --frames", output_.string()));
     }
     return;
   }
@@ -43,7 +43,8 @@ FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
     throw UsageError(fmt::format("--frames '{}' are more than {} frames", text, count_max));
   }
   if (!name.empty() && count() > 1 && !has_place) {
-    throw UsageError(fmt::format("-o '{}' has no # for the frame number; use a name such as frame_####.exr", name));
+    throw UsageError(
+        fmt::format("'{}' has no # for the frame number; use a name such as frame_####.exr", output_.string()));
   }
 }
 
@@ -62,15 +63,14 @@ Metadata FrameSequence::metadata(int index) const
 bool FrameSequence::is_done(int index, glm::ivec2 size_px, const std::string &plan_id) const
 {
   const std::filesystem::path file = path(index);
+  if (!plan_id.empty()) {
+    return planned_fault(file.string(), plan_id).empty();
+  }
   if (!options_.is_resumed || !std::filesystem::is_regular_file(file)) {
     return false;
   }
   try {
-    if (plan_id.empty()) {
-      return read_picture(file).size_px == size_px;
-    }
-    const ExrPart part = read_exr_part(file, ExrContent::Header);
-    return part.whole_size_px == size_px && planned_fault(part.metadata, plan_id, file.string()).empty();
+    return read_picture(file).size_px == size_px;
   }
   catch (const std::runtime_error &) {
     // The file is incomplete, for example because the program was interrupted. Render it again.

@@ -293,28 +293,12 @@ Status merge(const MergeOptions &options)
   return status;
 }
 
-/** The reason why \a path is not complete, or not the file of this name of the plan \a id; empty: it is. */
-std::string fault_of(const std::string &path, const std::string &id)
-{
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    return path + (std::filesystem::exists(path, ignored) ? ": is no regular file" : ": is missing");
-  }
-  try {
-    const std::string fault = planned_fault(read_exr_part(path, ExrContent::Header).metadata, id, path);
-    return fault.empty() ? "" : path + ": " + fault;
-  }
-  catch (const std::runtime_error &error) {
-    return error.what();
-  }
-}
-
 /** A file of a plan. */
 struct PlannedFile {
   /** Index of WorkPlan::parts. */
   std::size_t part = 0;
   std::string name{};
-  /** The result of fault_of. */
+  /** The result of planned_fault. */
   std::string fault{};
 };
 
@@ -324,7 +308,8 @@ void find_faults(std::vector<PlannedFile> &files, const std::string &id)
   // Each thread has a file in memory.
   constexpr unsigned thread_count_max = 8;
   const unsigned thread_count = std::clamp(std::thread::hardware_concurrency(), 1U, thread_count_max);
-  scene::parallel_for(files.size(), thread_count, [&](std::size_t i) { files[i].fault = fault_of(files[i].name, id); });
+  scene::parallel_for(files.size(), thread_count,
+                      [&](std::size_t i) { files[i].fault = planned_fault(files[i].name, id); });
 }
 
 /** Checks all parts of a plan, and joins those of pictures that are divided. */
@@ -356,11 +341,16 @@ Status merge_plan(const std::string &path, bool is_checked_only)
   }
   find_faults(pictures, id);
   std::set<std::string> not_needed;
+  // Their parts may have been deleted after that merge.
+  std::vector<std::string> joined_faults;
   for (const PlannedFile &picture : pictures) {
     if (picture.fault.empty()) {
       const std::vector<std::string> &names = divided.at(picture.name);
       not_needed.insert(names.begin(), names.end());
       divided.erase(picture.name);
+    }
+    else if (std::filesystem::exists(picture.name)) {
+      joined_faults.push_back(picture.fault);
     }
   }
   std::erase_if(files, [&](const PlannedFile &file) { return not_needed.contains(file.name); });
@@ -373,6 +363,9 @@ Status merge_plan(const std::string &path, bool is_checked_only)
     }
   }
   if (fault_count > 0) {
+    for (const std::string &fault : joined_faults) {
+      print_message("gnomon: {}\n", fault);
+    }
     print_message("gnomon: {}: {} files are missing or damaged; render their parts again\n", path, fault_count);
     return Status::Failed;
   }

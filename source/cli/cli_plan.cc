@@ -109,13 +109,19 @@ Status plan(const PlanOptions &options, const CLI::App &command)
           fmt::format("--pictures '{}': the folder '{}' does not exist", render.output, first.parent_path().string()));
     }
     roles.add_output(first, "--pictures of " + path);
+    const bool can_divide_pictures =
+        render.debug.empty() && render.aov.empty() && render.engine_settings().noise_threshold == 0.0F;
+    if (options.tile_count > 1 && !can_divide_pictures) {
+      throw UsageError("--tiles divides pictures, and --aov, --debug and --noise-threshold need whole ones");
+    }
+    if (options.tile_count > render.size_px().y) {
+      throw UsageError(fmt::format("--tiles {}: the picture has {} rows", options.tile_count, render.size_px().y));
+    }
     MeasuredScene measured = measure_scene(render, device.get());
     if (!device) {
       measured.cost.sample_seconds = options.seconds_per_frame / render.samples;
     }
     plan.scenes.push_back({path, measured.fingerprint, render.output});
-    const bool can_divide_pictures =
-        render.debug.empty() && render.aov.empty() && render.engine_settings().noise_threshold == 0.0F;
     const WorkOfScene work{.scene = plan.scenes.size() - 1,
                            .is_animated = frames.is_animated(),
                            .first_frame = frames.first(),
@@ -156,11 +162,11 @@ void add_plan(CLI::App &app, Status &status)
                       "scene's name)");
   command->add_option("--target-seconds", options->target_seconds, "Time of a part, s")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(number_range(1e-3, 1e9));
   command
       ->add_option("--seconds-per-frame", options->seconds_per_frame,
                    "Time of a picture, s (default: some samples of the middle frame are drawn)")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->check(number_range(1e-9, 1e9));
   command->add_option("--tiles", options->tile_count, "Strips of each picture that are parts of their own")
       ->capture_default_str()
       ->check(CLI::Range(1, 65536));

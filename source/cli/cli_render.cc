@@ -482,7 +482,8 @@ std::vector<RenderOptions> options_of_scenes(const RenderOptions &options)
   for (const std::string &scene : options.scenes) {
     RenderOptions &one = all.emplace_back(options);
     one.scene = scene;
-    one.output = scene_name(options.output, scene);
+    // Names of a plan are complete: a scene's name may contain the placeholder.
+    one.output = options.plan_id.empty() ? scene_name(options.output, scene) : options.output;
     one.json = scene_name(options.json, scene);
   }
   return all;
@@ -533,7 +534,8 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
       ImportedScene imported = import.get();
       if (!options.plan_id.empty() && imported.fingerprint != options.planned_scene) {
         throw std::runtime_error(
-            fmt::format("{}: has changed since the plan was made, or the world has", scenes[i].scene));
+            fmt::format("{}: has changed since the plan was made, or the file of --world has; make the plan again",
+                        scenes[i].scene));
       }
       if (i + 1 < scenes.size()) {
         next = start_import(scenes[i + 1], stops);
@@ -662,7 +664,9 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
                                  {"samples", result.samples_drawn}};
     fmt::print("{}\n", line.dump());
   };
-  if (has_all_pictures(options)) {
+  const WorkPart &part = plan.parts[name.index];
+  const bool is_joined = part.is_of_picture() && planned_fault(picture_of(plan, part), options.plan_id).empty();
+  if (is_joined || has_all_pictures(options)) {
     print_line("skipped");
     return Status::Done;
   }
@@ -685,13 +689,13 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   scene::Scene scene = import_scene(options.scene, options.import_options());
   MeasuredScene measured{content_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
-  frames.choose_animations(scene);
-  frames.pose(scene, 0);
-  const scene::PlacedCamera camera = find_camera(scene, options);
+  // What parts would refuse is refused before there are many.
+  Aov(options.aov).check(scene);
+  static_cast<void>(parse_debug(options.debug));
+  static_cast<void>(prepare(options, frames, scene));
   if (!device) {
     return measured;
   }
-  light_by_world(scene, camera, options.world);
   eevee::SceneRenderer renderer(*device, scene, options.size_px(), options.engine_settings());
   const auto draw_while = [&](const std::function<bool(int drawn)> &condition) {
     renderer.sync();

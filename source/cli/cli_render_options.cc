@@ -309,7 +309,7 @@ static CLI::Option *add_picture_options(CLI::App &command, RenderOptions &option
   command
       .add_option("--time-limit", options.seconds_max,
                   "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(number_range(1e-3, 1e9));
   SettingOptions<eevee::Settings> settings(setting_defaults());
   settings.take<eevee::Settings>(whole_part, [](std::string_view option) { return option != "samples"; });
   settings.add_to(command, "Picture", options.changes);
@@ -351,7 +351,7 @@ static void add_animation_options(CLI::App &command, RenderOptions &options)
   command.add_option("--fps", options.frames.frames_per_second, "Frames per second of an animation; frame 0 is at 0 s")
       ->needs(frames)
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(number_range(1e-3, 1e6));
   command
       .add_option(
           "--shutter", options.frames.shutter,
@@ -359,7 +359,7 @@ static void add_animation_options(CLI::App &command, RenderOptions &options)
           "blur")
       ->needs(frames)
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(number_range(0.0, 100.0));
   command
       .add_option("--animation", options.frames.animations,
                   "Name of an animation, may be given several times; or all (default: those that animate other things "
@@ -384,11 +384,11 @@ static void add_part_and_choice_options(CLI::App &command, RenderOptions &option
   command
       .add_option("--max-error", options.choice.error_max,
                   "Choose the fastest shadows and samples with at most this RMSE against ray tracing")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(number_range(1e-6, 1e6));
   command
       .add_option("--max-time", options.choice.milliseconds_max,
                   "Choose the most exact shadows and samples within this time for a picture, ms")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(number_range(1e-3, 1e9));
   command.add_option("--report", options.choice.report_folder,
                      "Folder of gnomon report to choose from (default: render a pilot)");
 }
@@ -420,7 +420,7 @@ static void add_farm_options(CLI::App &command, RenderOptions &options)
   command
       .add_option("--stop-after", options.stop_seconds,
                   "Time after which the command ends after the current sample, as after SIGTERM, s")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(number_range(1e-3, 1e9));
   command.add_flag(
       "--checkpoint", options.has_checkpoint,
       "If the command ends early, write the samples drawn so far to OUT.checkpoint.exr for `gnomon merge`");

@@ -123,16 +123,26 @@ Metadata planned_metadata(const std::string &id, const std::string &name)
   return {{plan_metadata, id}, {planned_file_metadata, name}};
 }
 
-std::string planned_fault(const Metadata &metadata, const std::string &id, const std::string &name)
+std::string planned_fault(const std::string &name, const std::string &id)
 {
-  if (metadata_value(metadata, plan_metadata) != id) {
-    return "is not of this plan";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(name, ignored)) {
+    return name + (std::filesystem::exists(name, ignored) ? ": is no regular file" : ": is missing");
   }
-  const std::string planned = metadata_value(metadata, planned_file_metadata);
-  if (planned != name) {
-    return fmt::format("is a copy of '{}' under another name", planned);
+  try {
+    const Metadata metadata = read_exr_part(name, ExrContent::Header).metadata;
+    if (metadata_value(metadata, plan_metadata) != id) {
+      return name + ": is not of this plan";
+    }
+    const std::string planned = metadata_value(metadata, planned_file_metadata);
+    if (planned != name) {
+      return fmt::format("{}: is a copy of '{}' under another name", name, planned);
+    }
+    return metadata_value(metadata, checksum_metadata).empty() ? name + ": is damaged: it has no checksum" : "";
   }
-  return metadata_value(metadata, checksum_metadata).empty() ? "is damaged: it has no checksum" : "";
+  catch (const std::runtime_error &error) {
+    return error.what();
+  }
 }
 
 /** \throws std::exception if \a document is not what write_plan writes */

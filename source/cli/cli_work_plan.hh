@@ -21,8 +21,8 @@ inline constexpr const char *planned_file_metadata = "gnomon:plan_file";
 
 /** These metadata of the file \a name of the plan \a id. */
 [[nodiscard]] Metadata planned_metadata(const std::string &id, const std::string &name);
-/** The reason why a file with \a metadata is not the file \a name of the plan \a id; empty: it is. */
-[[nodiscard]] std::string planned_fault(const Metadata &metadata, const std::string &id, const std::string &name);
+/** The reason, with the name, why the file \a name is not that of the plan \a id, or not complete; empty: it is. */
+[[nodiscard]] std::string planned_fault(const std::string &name, const std::string &id);
 
 /** One process's share: frames of a scene, or a part of one picture. */
 struct WorkPart {

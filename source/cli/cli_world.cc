@@ -24,12 +24,12 @@ void add_world_options(CLI::App &command, WorldOptions &options)
                      "Layer of an EXR file of --world, where it has several and none without a name");
   command.add_option("--world-strength", options.strength, "Factor of the world's radiance")
       ->capture_default_str()
-      ->check(CLI::Range(0.0F, 1e6F));
+      ->check(number_range(0.0, 1e6));
   command
       .add_option("--world-rotation", options.rotation_degrees,
                   "Rotation of the world around the vertical axis, degrees")
       ->capture_default_str()
-      ->check(CLI::Range(-360.0F, 360.0F));
+      ->check(number_range(-360.0, 360.0));
 }
 
 std::vector<std::string> arguments_of(const WorldOptions &options)

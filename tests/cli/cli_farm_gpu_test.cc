@@ -141,6 +141,48 @@ TEST_F(FarmTest, DividedPicturesAreJoinedAndDamageIsNamed)
   EXPECT_EQ(values_of("f_3.exr"), values_of("whole_3.exr"));
   fs::remove(folder / "f_3.tile1of2.exr");
   EXPECT_EQ(run("merge --plan jobs.json").status, 0) << "the picture is complete without its parts";
+  EXPECT_EQ(render_part(0)["status"], "skipped");
+  fs::resize_file(folder / "f_3.exr", fs::file_size(folder / "f_3.exr") - 40);
+  damaged = run("merge --plan jobs.json");
+  EXPECT_NE(damaged.err.find("gnomon: f_3.exr: is damaged"), std::string::npos) << damaged.err;
+  EXPECT_NE(damaged.err.find("part 0: f_3.tile1of2.exr: is missing"), std::string::npos) << damaged.err;
+  EXPECT_EQ(render_part(0)["status"], "done");
+}
+
+TEST_F(FarmTest, APlanRefusesWhatItsPartsWouldRefuse)
+{
+  struct Refusal {
+    const char *options;
+    int status;
+    const char *reason;
+  };
+  for (const auto &[options, status, reason] : {
+           Refusal{"--world nowhere.exr", 1, "nowhere.exr"},
+           Refusal{"--aov nothing", 2, "no layer 'nothing'"},
+           Refusal{"--debug nothing", 2, "nothing"},
+           Refusal{"--background nothing", 2, "nothing"},
+           Refusal{"--tiles 19", 2, "the picture has 18 rows"},
+           Refusal{"--tiles 2 --aov depth", 2, "--tiles divides pictures"},
+           Refusal{"--target-seconds nan", 2, "--target-seconds"},
+           Refusal{"--frames 0-1 --pictures out.exr", 2, "'out.exr' has no #"},
+       }) {
+    const Finished refused =
+        run(std::string("plan moving.gltf --size 32x18 -o jobs.json --seconds-per-frame 1 ") + options);
+    EXPECT_EQ(refused.status, status) << options << '\n' << refused.err;
+    EXPECT_NE(refused.err.find(reason), std::string::npos) << options << '\n' << refused.err;
+    EXPECT_FALSE(fs::exists(folder / "jobs.json")) << options;
+  }
+  EXPECT_EQ(run(plan + std::string("--frames 0 --seconds-per-frame nan")).status, 2);
+  EXPECT_EQ(run("compare a.exr b.exr --max-rmse nan").status, 2) << "which no error exceeds";
+}
+
+TEST_F(FarmTest, ASceneMayHaveThePlaceholderInItsName)
+{
+  fs::copy(folder / "moving.gltf", folder / "v{scene}.gltf");
+  ASSERT_EQ(run("plan v{scene}.gltf --size 8x8 --seconds-per-frame 1 -o jobs.json --pictures {scene}_n.exr").status, 0);
+  EXPECT_EQ(render_part(0)["status"], "done");
+  EXPECT_EQ(run("merge --plan jobs.json").status, 0);
+  EXPECT_TRUE(fs::exists(folder / "v{scene}_n.exr"));
 }
 
 TEST_F(FarmTest, APlanIsOfOneSceneAndOneProgram)

@@ -145,7 +145,7 @@ TEST_F(SlowFramesTest, FramesOfProcessesThatWereKilledAreWholeAndResumedToTheEnd
   bool is_done = false;
   while (!is_done && kills < 200) {
     // From before the first frame is drawn to many frames later.
-    const double seconds = std::uniform_real_distribution<double>(0.1, 0.9)(random) * whole_seconds;
+    const double seconds = std::uniform_real_distribution<double>(0.05, 0.5)(random) * whole_seconds;
     const std::string command = "cd '" + folder.string() + "' && timeout -s KILL " + std::to_string(seconds) + " '" +
                                 GNOMON_PROGRAM + "' " + frames + "killed_##.exr --resume > stdout.txt 2> stderr.txt";
     is_done = std::system(command.c_str()) == 0;
