@@ -3,8 +3,6 @@
 
 #include "render_materials.hh"
 
-#include "scene_image.hh"
-
 #include <algorithm>
 #include <bit>
 
@@ -62,7 +60,8 @@ bool is_seen(const scene::Image &image)
   return false;
 }
 
-gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::ImageUse use, float mask_cutoff)
+gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::ImageUse use,
+                        const scene::MaskCover &mask)
 {
   gpu::Texture texture =
       device.create_texture({.name = image.name,
@@ -72,7 +71,7 @@ gpu::Texture make_image(gpu::Device &device, const scene::Image &image, scene::I
                              .mip_levels = int(std::bit_width(std::max(image.width, image.height)))});
   // Rows need not be reversed: v = 0 is the first row both in the scene and on the device.
   if (use == scene::ImageUse::Mask || (use == scene::ImageUse::Coverage && is_seen(image))) {
-    const std::vector<std::uint8_t> levels = coverage_levels(image, mask_cutoff);
+    const std::vector<std::uint8_t> levels = coverage_levels(image, mask);
     device.upload(texture, 0, std::as_bytes(std::span(levels)));
     return texture;
   }
@@ -90,13 +89,14 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
 {
   if (!is_drawable(scene, handle)) {
     if (!white_) {
-      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, scene::ImageUse::Data, 0.0F);
+      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, scene::ImageUse::Data, {});
     }
     return {white_, sampler(device, {}, false)};
   }
   const scene::Texture &texture = scene.textures()[handle];
   const scene::Revision content = scene.images().revision(texture.image, scene::Image::Aspect::Content);
-  std::vector<Entry> &entries = entries_[{use, mask_cutoff}];
+  const scene::MaskCover mask{mask_cutoff, mask_cutoff > 0.0F && texture.magnified == scene::TextureFilter::Linear};
+  std::vector<Entry> &entries = entries_[{use, mask}];
   if (entries.size() <= texture.image.index) {
     entries.resize(scene.images().index_end());
   }
@@ -105,8 +105,7 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
   const std::uint64_t resource = host_textures_.resource_revision(texture.image);
   if (!entry.texture || entry.handle != texture.image || entry.content != content || entry.host_resource != resource) {
     const scene::Image &image = scene.images()[texture.image];
-    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host))
-                  : make_image(device, image, use, mask_cutoff),
+    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host)) : make_image(device, image, use, mask),
              texture.image, content, resource};
   }
   // A host's texture of one level is incomplete for a sampler that reads others, and looked up as black.
@@ -172,7 +171,7 @@ HostChanges Images::update(const scene::Scene &scene)
              return material_data(item.value).mask_cutoff == cutoff;
            });
   };
-  std::erase_if(entries_, [&](const auto &entries) { return !is_used(entries.first.second); });
+  std::erase_if(entries_, [&](const auto &entries) { return !is_used(entries.first.second.cutoff); });
   return changes;
 }
 

@@ -4,6 +4,7 @@
 #include "render_host_resources.hh"
 
 #include "scene.hh"
+#include "scene_image.hh"
 
 #include "gpu_device.hh"
 
@@ -14,8 +15,8 @@ namespace gnomon::render_scene {
 
 /**
  * The images and samplers of a scene on one device. An image is uploaded, with mip levels, when a pass first reads it,
- * and again after its content has changed. An image has one texture for each use and each cutoff. Textures with the
- * same sampling settings share a sampler. An image that has a texture of the host is not uploaded.
+ * and again after its content has changed. An image has one texture for each use and each cover of masks. Textures with
+ * the same sampling settings share a sampler. An image that has a texture of the host is not uploaded.
  */
 class Images {
  public:
@@ -26,7 +27,7 @@ class Images {
   /**
    * Image and sampler of the texture \a handle; a white texel if the texture is not drawable. The references are valid
    * until the next get() after an edit of the scene's images, or until update(). \a mask_cutoff: \see
-   * scene::coverage_levels
+   * scene::MaskCover
    * \throws gpu::Error if the device cannot create the image
    */
   Lookup get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle, scene::ImageUse use,
@@ -62,8 +63,8 @@ class Images {
     /** The number in `host_textures_`; 0: the image was uploaded. */
     std::uint64_t host_resource = 0;
   };
-  /** Indexed by the use with its cutoff, and by Handle::index. */
-  std::map<std::pair<scene::ImageUse, float>, std::vector<Entry>> entries_;
+  /** Indexed by the use with its mask, and by Handle::index. */
+  std::map<std::pair<scene::ImageUse, scene::MaskCover>, std::vector<Entry>> entries_;
   HostResources<scene::Image, gpu::HostTexture> host_textures_;
   gpu::Texture white_;
   /** By the sampler's settings, packed into a number. */

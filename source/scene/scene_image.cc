@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace gnomon::scene {
 
@@ -55,16 +55,116 @@ std::vector<Span> spans_of(std::uint32_t size, std::uint32_t reduced_size)
   return spans;
 }
 
-/** The mean of an area: linear colours times the covered part, and that part. */
+/** The mean of an area: linear colours times their weight, that weight, and the covered part. */
 struct Mean {
   std::array<float, 3> weighted{};
-  float alpha = 0.0F;
+  float weight = 0.0F;
+  float part = 0.0F;
 };
 
 std::uint8_t rounded(float value)
 {
   return std::uint8_t(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
 }
+
+/** The parts of the texels of an image that a mask covers. */
+class CoveredParts {
+ public:
+  /** \a image must live as long as this. */
+  CoveredParts(const Image &image, const MaskCover &mask) : image_(image), least_(255.0F * mask.cutoff)
+  {
+    while (least_byte_ < 256 && float(least_byte_) / 255.0F < mask.cutoff) {
+      least_byte_++;
+    }
+    if (mask.cutoff > 0.0F && mask.is_linear) {
+      parts_.resize(std::size_t(image.width) * image.height);
+      parallel_for(image.height, parts_.size() < 65536 ? 1 : 0, [&](std::size_t y) { filter_row(y); });
+    }
+  }
+  /** Whether the texel itself is covered, so that its colour is seen. */
+  [[nodiscard]] bool has_color(std::size_t x, std::size_t y) const
+  {
+    return alpha(x, y) >= least_byte_;
+  }
+  [[nodiscard]] float part(std::size_t x, std::size_t y) const
+  {
+    return parts_.empty() ? (has_color(x, y) ? 1.0F : 0.0F) : float(parts_[y * image_.width + x]) / 255.0F;
+  }
+
+ private:
+  [[nodiscard]] int alpha(std::size_t x, std::size_t y) const
+  {
+    return image_.texels[4 * (y * image_.width + x) + 3];
+  }
+  /** \a at and its neighbours; the texels repeat. */
+  static std::array<std::size_t, 3> around(std::size_t at, std::size_t size)
+  {
+    return {at > 0 ? at - 1 : size - 1, at, at + 1 < size ? at + 1 : 0};
+  }
+
+  void filter_row(std::size_t y)
+  {
+    const std::array<std::size_t, 3> rows = around(y, image_.height);
+    // Covered texels of the three rows.
+    std::vector<std::uint8_t> counts(image_.width);
+    for (const std::size_t row : rows) {
+      for (std::size_t x = 0; x < counts.size(); x++) {
+        counts[x] = std::uint8_t(counts[x] + (has_color(x, row) ? 1 : 0));
+      }
+    }
+    for (std::size_t x = 0; x < counts.size(); x++) {
+      const std::array<std::size_t, 3> columns = around(x, image_.width);
+      const int count = counts[columns[0]] + counts[x] + counts[columns[2]];
+      parts_[y * image_.width + x] = count == 0 ? 0 : count == 9 ? 255 : rounded(mixed_part(columns, rows));
+    }
+  }
+
+  /** The part of the middle one of nine texels. */
+  [[nodiscard]] float mixed_part(const std::array<std::size_t, 3> &columns,
+                                 const std::array<std::size_t, 3> &rows) const
+  {
+    const auto value = [&](std::size_t a, std::size_t b) { return float(alpha(columns[a], rows[b])); };
+    float sum = 0.0F;
+    for (const std::size_t b : {0, 2}) {
+      for (const std::size_t a : {0, 2}) {
+        sum += quarter(value(1, 1), value(a, 1), value(1, b), value(a, b)) / 4.0F;
+      }
+    }
+    return sum;
+  }
+
+  /** The part of a quarter of a texel. Alphas: its own, those of its neighbours, and that of the texel between them. */
+  [[nodiscard]] float quarter(float own, float beside, float above, float across) const
+  {
+    const int count = int(own >= least_) + int(beside >= least_) + int(above >= least_) + int(across >= least_);
+    if (count % 4 == 0) {
+      return float(count / 4);
+    }
+    // The part is exact along the axis of the greater change, as alphas are linear there.
+    if (std::abs(beside - own) > std::abs(above - own)) {
+      std::swap(beside, above);
+    }
+    constexpr int step_count = 4;
+    float sum = 0.0F;
+    for (int i = 0; i < step_count; i++) {
+      // From the centre of the texel to its edge.
+      const float x = (float(i) + 0.5F) / float(2 * step_count);
+      const float centre = own + (beside - own) * x;
+      const float edge = (centre + above + (across - above) * x) / 2.0F;
+      const bool is_centre = centre >= least_;
+      const bool is_edge = edge >= least_;
+      const float to_edge = is_centre == is_edge ? 1.0F : (least_ - centre) / (edge - centre);
+      sum += is_centre ? to_edge : is_edge ? 1.0F - to_edge : 0.0F;
+    }
+    return sum / float(step_count);
+  }
+
+  const Image &image_;
+  float least_;
+  int least_byte_ = 0;
+  /** Of the linear filter, in 1/255; empty: texels are covered or not. */
+  std::vector<std::uint8_t> parts_;
+};
 
 /** The linear value of each byte. */
 std::array<float, 256> decoded_bytes(ImageUse use)
@@ -132,7 +232,8 @@ Level halved(std::uint32_t width, std::uint32_t height, const MeanAt &mean_at)
           for (std::size_t c = 0; c < 3; c++) {
             sum.weighted[c] += share * one.weighted[c];
           }
-          sum.alpha += share * one.alpha;
+          sum.weight += share * one.weight;
+          sum.part += share * one.part;
         }
       }
     }
@@ -284,12 +385,12 @@ static void fill_uncovered(Image &image, const std::vector<float> &parts)
 
 /**
  * Sets the alphas of a reduced mask, whose texels are covered or not, and \a parts are not. They are the part, as far
- * above the cutoff as a half. Where the covered part of the image would change, by texels or by a linear filter between
- * them, texels have one of two alphas, so that the filter shows that part.
+ * above the cutoff as a half. \a wanted: the covered part of the image. Where the covered part of the image would
+ * change, by texels or by a linear filter between them, texels have one of two alphas, so that the filter shows that
+ * part.
  */
-static void cover(Image &image, const std::vector<float> &parts, float cutoff)
+static void cover(Image &image, const std::vector<float> &parts, double wanted, float cutoff)
 {
-  const double wanted = std::accumulate(parts.begin(), parts.end(), 0.0) / double(parts.size());
   constexpr double change_max = 0.01;
   std::vector<bool> is_covered = covered_texels(parts, image.width, false);
   const double count = double(std::ranges::count(is_covered, true)) / double(parts.size());
@@ -311,7 +412,7 @@ static void cover(Image &image, const std::vector<float> &parts, float cutoff)
   fill_uncovered(image, parts);
 }
 
-Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cutoff)
+Image reduced(Image image, std::uint32_t size_max, ImageUse use, const MaskCover &mask)
 {
   const glm::uvec2 size = reduced_size({image.width, image.height}, size_max);
   if (size == glm::uvec2(image.width, image.height)) {
@@ -322,31 +423,36 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cuto
   const std::vector<Span> rows = spans_of(image.height, size.y);
   Image result{std::move(image.name), std::uint32_t(columns.size()), std::uint32_t(rows.size()), {}};
   result.texels.reserve(4 * columns.size() * rows.size());
-  const bool is_mask = use == ImageUse::Mask && mask_cutoff > 0.0F;
+  const bool is_mask = use == ImageUse::Mask && mask.cutoff > 0.0F;
+  const CoveredParts covered(image, mask);
   const bool has_alpha = use == ImageUse::Coverage || use == ImageUse::Mask;
-  /** The mean of colours, of alphas and of the covered part. */
+  /** The mean of colours, of alphas, of the weights of colours and of the covered part. */
   const auto sum_of = [&](const Span &row, const Span &column, bool is_weighted) {
-    std::array<float, 5> sum{};
+    std::array<float, 6> sum{};
     for (std::size_t b = 0; b < row.shares.size(); b++) {
       for (std::size_t a = 0; a < column.shares.size(); a++) {
         const float share = row.shares[b] * column.shares[a];
-        const std::size_t texel = 4 * ((std::size_t(row.first) + b) * image.width + column.first + a);
+        const std::size_t x = column.first + a;
+        const std::size_t y = row.first + b;
+        const std::size_t texel = 4 * (y * image.width + x);
         const float alpha = float(image.texels[texel + 3]) / 255.0F;
-        const float part = !is_mask ? alpha : alpha >= mask_cutoff ? 1.0F : 0.0F;
-        const float weight = is_weighted ? share * part : share;
+        const float own_weight = !is_mask ? alpha : covered.has_color(x, y) ? 1.0F : 0.0F;
+        const float weight = is_weighted ? share * own_weight : share;
         for (std::size_t c = 0; c < 3; c++) {
           sum[c] += weight * decoded[image.texels[texel + c]];
         }
         sum[3] += share * alpha;
-        sum[4] += share * part;
+        sum[4] += share * own_weight;
+        sum[5] += is_mask ? share * covered.part(x, y) : 0.0F;
       }
     }
     return sum;
   };
   std::vector<float> parts;
+  double wanted = 0.0;
   for (const Span &row : rows) {
     for (const Span &column : columns) {
-      std::array<float, 5> mean = sum_of(row, column, has_alpha);
+      std::array<float, 6> mean = sum_of(row, column, has_alpha);
       if (has_alpha && mean[4] > 0.0F) {
         std::for_each_n(mean.begin(), 3, [&](float &value) { value /= mean[4]; });
       }
@@ -357,26 +463,32 @@ Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cuto
         result.texels.push_back(rounded(use != ImageUse::Data && c < 3 ? encoded_srgb(mean[c]) : mean[c]));
       }
       if (is_mask) {
-        parts.push_back(mean[4]);
+        // A texel without a color is not covered.
+        parts.push_back(mean[4] > 0.0F ? mean[5] : 0.0F);
+        wanted += mean[5];
       }
     }
   }
   if (is_mask) {
-    cover(result, parts, mask_cutoff);
+    cover(result, parts, wanted / double(parts.size()), mask.cutoff);
   }
   return result;
 }
 
-std::vector<std::uint8_t> coverage_levels(const Image &image, float mask_cutoff)
+std::vector<std::uint8_t> coverage_levels(const Image &image, const MaskCover &mask)
 {
   const std::array<float, 256> decoded = decoded_bytes(ImageUse::Coverage);
   const SrgbEncoder encoded;
   std::vector<Level> levels{{image.width, image.height, {}}};
+  const bool is_mask = mask.cutoff > 0.0F;
+  const CoveredParts covered(image, mask);
   const auto mean_of_image = [&](std::size_t x, std::size_t y) {
     const std::uint8_t *texel = &image.texels[4 * (y * image.width + x)];
     const float alpha = float(texel[3]) / 255.0F;
-    const float part = mask_cutoff <= 0.0F ? alpha : alpha >= mask_cutoff ? 1.0F : 0.0F;
-    return Mean{{part * decoded[texel[0]], part * decoded[texel[1]], part * decoded[texel[2]]}, part};
+    const float weight = !is_mask ? alpha : covered.has_color(x, y) ? 1.0F : 0.0F;
+    return Mean{{weight * decoded[texel[0]], weight * decoded[texel[1]], weight * decoded[texel[2]]},
+                weight,
+                is_mask ? covered.part(x, y) : alpha};
   };
   while (levels.back().width > 1 || levels.back().height > 1) {
     const Level &finer = levels.back();
@@ -402,11 +514,13 @@ std::vector<std::uint8_t> coverage_levels(const Image &image, float mask_cutoff)
       std::uint8_t *texel = &texels[starts[i] + 4 * y * level.width];
       for (std::size_t x = 0; x < level.width; x++, texel += 4) {
         const Mean *mean = i > 0 ? &level.means[y * level.width + x] : nullptr;
-        if (mean && mean->alpha > 0.0F) {
+        if (mean) {
+          texel[3] = rounded(mean->part);
+        }
+        if (mean && mean->weight > 0.0F) {
           for (std::size_t c = 0; c < 3; c++) {
-            texel[c] = encoded(mean->weighted[c] / mean->alpha);
+            texel[c] = encoded(mean->weighted[c] / mean->weight);
           }
-          texel[3] = rounded(mean->alpha);
         }
         else if (coarser && (mean || texel[3] == 0)) {
           const std::size_t column = std::min<std::size_t>(x / 2, coarser->width - 1);

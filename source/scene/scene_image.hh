@@ -5,6 +5,7 @@
 
 #include <glm/ext/vector_uint2.hpp>
 
+#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -22,21 +23,31 @@ namespace gnomon::scene {
 /** The size, in texels, of an image of \a size after reduced(). */
 [[nodiscard]] glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max);
 
+/** What a mask covers. */
+struct MaskCover {
+  /** Least alpha of what is covered. 0: no mask. */
+  float cutoff = 0.0F;
+  /** Whether alphas are interpolated between the centres of texels; otherwise a texel is covered or not. */
+  bool is_linear = false;
+  auto operator<=>(const MaskCover &) const = default;
+};
+
 /**
  * \a image with at most \a size_max texels along both edges, and about the same ratio of its edges. Each texel is the
  * mean of the area that it covers, of values or of decoded colours as \a use says. With ImageUse::Mask and a
- * \a mask_cutoff above 0, about as large a part of the result has an alpha of at least \a mask_cutoff as of the image.
+ * cutoff above 0, \a mask covers about as large a part of the result as of the image.
  * An image that is small enough is returned as it is. \pre \a size_max > 0
  */
-[[nodiscard]] Image reduced(Image image, std::uint32_t size_max, ImageUse use, float mask_cutoff = 0.0F);
+[[nodiscard]] Image reduced(Image image, std::uint32_t size_max, ImageUse use, const MaskCover &mask = {});
 
 /**
- * The texels of all mip levels, the finest first, for ImageUse::Coverage, or for ImageUse::Mask if \a mask_cutoff is
- * above 0. A texel of a level has the mean of the colours that it covers, weighted by what they cover, and the covered
- * part. A texel of the image covers the part alpha; of a mask, all if its alpha is at least \a mask_cutoff, otherwise
- * nothing. Texels that cover nothing, and those of the image without alpha, have the colour of the next coarser level
- * that has one, so that filters between texels mix in no colour that is not seen. Edges are halved and rounded down.
+ * The texels of all mip levels, the finest first, for ImageUse::Coverage, or for ImageUse::Mask if \a mask has a
+ * cutoff. A texel of a level has the mean of the colours that it covers, weighted by what they cover, and the covered
+ * part. A texel of the image covers the part alpha; of a mask, what \a mask says, with a colour if its own alpha is at
+ * least the cutoff. Texels without a colour, and those of the image without alpha, have the colour of the next coarser
+ * level that has one, so that filters between texels mix in no colour that is not seen. The texels repeat. Edges are
+ * halved and rounded down.
  */
-[[nodiscard]] std::vector<std::uint8_t> coverage_levels(const Image &image, float mask_cutoff = 0.0F);
+[[nodiscard]] std::vector<std::uint8_t> coverage_levels(const Image &image, const MaskCover &mask = {});
 
 }  // namespace gnomon::scene

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 
 namespace gnomon::scene {
 namespace {
@@ -87,12 +88,12 @@ TEST(CoverageLevels, OfAMaskAreSharesOfTheTexelsAtLeastAtItsCutoff)
 {
   // Alpha of 0, 76, 77 and 255: of a cutoff of 0.3, which is 76.5, the last two are left.
   Image image{"mask", 2, 2, {9, 9, 9, 0, 200, 0, 0, 76, 0, 200, 0, 77, 0, 200, 0, 255}};
-  std::vector<std::uint8_t> levels = coverage_levels(image, 0.3F);
+  std::vector<std::uint8_t> levels = coverage_levels(image, {0.3F});
   ASSERT_EQ(levels.size(), 20U);
   EXPECT_TRUE(std::equal(levels.begin() + 4, levels.begin() + 16, image.texels.begin() + 4)) << "the image";
   EXPECT_EQ(std::vector(levels.begin() + 16, levels.end()), (std::vector<std::uint8_t>{0, 200, 0, 128}));
-  EXPECT_EQ(coverage_levels(image, 0.1F)[19], 191);
-  EXPECT_EQ(coverage_levels({"none", 1, 2, {1, 1, 1, 99, 1, 1, 1, 99}}, 0.5F)[11], 0);
+  EXPECT_EQ(coverage_levels(image, {0.1F})[19], 191);
+  EXPECT_EQ(coverage_levels({"none", 1, 2, {1, 1, 1, 99, 1, 1, 1, 99}}, {0.5F})[11], 0);
 }
 
 TEST(CoverageLevels, AreMeansOfLightAlsoForOddEdges)
@@ -161,7 +162,7 @@ TEST(ReducedMask, CoversAsMuchAsTheImage)
     for (const std::uint32_t size : {16U, 24U, 64U}) {
       for (std::uint32_t covered = 0; covered <= 8; covered++) {
         const Image image = leaf_mask(128, [&](std::uint32_t x, std::uint32_t) { return x % 8 < covered; });
-        const Image small = reduced(image, size, ImageUse::Mask, cutoff);
+        const Image small = reduced(image, size, ImageUse::Mask, {cutoff});
         EXPECT_NEAR(covered_part(small, cutoff), covered / 8.0, 1.0 / size) << cutoff << ' ' << size << ' ' << covered;
         // Edges lie between texels that are covered in part.
         EXPECT_NEAR(filtered_part(small, cutoff), covered / 8.0, 0.03) << cutoff << ' ' << size << ' ' << covered;
@@ -182,10 +183,40 @@ TEST(ReducedMask, ShowsNoColorThatIsCutOut)
   for (std::size_t i = 3; i < image.texels.size(); i += 4) {
     image.texels[i] = image.texels[i - 3] == 255 ? 150 : 255;
   }
-  const Image small = reduced(image, 16, ImageUse::Mask, 0.8F);
+  const Image small = reduced(image, 16, ImageUse::Mask, {0.8F});
   EXPECT_NEAR(covered_part(small, 0.8F), 1.0 / 16.0, 0.01);
   for (std::size_t i = 0; i < small.texels.size(); i += 4) {
     EXPECT_TRUE(small.texels[i] == 50 || float(small.texels[i + 3]) < 0.8F * 255.0F) << i;
+  }
+}
+
+TEST(CoverageLevels, OfALinearMaskAreWhatTheFilterShows)
+{
+  for (const float cutoff : {0.1F, 0.25F, 0.5F, 0.8F}) {
+    // The edge of a stripe lies where the filter passes the cutoff. A dot is (1 - x) (1 - y) in each of four squares,
+    // and covers the integral of 1 - cutoff / (1 - x) from x = 0 to 1 - cutoff.
+    const double stripe = (4.0 + 2.0 * (0.5 - cutoff)) / 8.0;
+    const double dot = 4.0 * (1.0 - cutoff + cutoff * std::log(cutoff)) / 16.0;
+    const Image stripes = leaf_mask(16, [](std::uint32_t x, std::uint32_t) { return x % 8 < 4; });
+    const Image dots = leaf_mask(16, [](std::uint32_t x, std::uint32_t y) { return x % 4 == 0 && y % 4 == 0; });
+    // A texel of the image and one of the level are rounded.
+    EXPECT_NEAR(coverage_levels(stripes, {cutoff, true}).back() / 255.0, stripe, 1.0 / 255.0) << cutoff;
+    // Four columns stand for the curve in a quarter of a texel.
+    EXPECT_NEAR(coverage_levels(dots, {cutoff, true}).back() / 255.0, dot, 1.0 / 255.0) << cutoff;
+    EXPECT_EQ(coverage_levels(dots, {cutoff}).back(), 16);
+    // The colour is that of the dots; red is mixed into their edges by the filter alone.
+    const std::vector<std::uint8_t> levels = coverage_levels(dots, {cutoff, true});
+    EXPECT_EQ(levels[levels.size() - 4], 50);
+  }
+}
+
+TEST(ReducedMask, OfALinearFilterCoversWhatTheFilterShowed)
+{
+  std::mt19937 random(1);
+  for (const float cutoff : {0.1F, 0.25F, 0.5F, 0.8F}) {
+    const Image image = leaf_mask(64, [&](std::uint32_t, std::uint32_t) { return random() % 2 == 0; });
+    const Image small = reduced(image, 32, ImageUse::Mask, {cutoff, true});
+    EXPECT_NEAR(filtered_part(small, cutoff), filtered_part(image, cutoff), 0.02) << cutoff;
   }
 }
 
@@ -195,7 +226,8 @@ TEST(ReducedMask, DotsAndHolesKeepTheirAreaInAFilter)
     for (const bool is_hole : {false, true}) {
       const Image image =
           leaf_mask(128, [&](std::uint32_t x, std::uint32_t y) { return (x % 8 < 4 && y % 8 < 4) != is_hole; });
-      EXPECT_NEAR(filtered_part(reduced(image, size, ImageUse::Mask, 0.5F), 0.5F), is_hole ? 0.75 : 0.25, 0.02) << size;
+      EXPECT_NEAR(filtered_part(reduced(image, size, ImageUse::Mask, {0.5F}), 0.5F), is_hole ? 0.75 : 0.25, 0.02)
+          << size;
     }
   }
 }
@@ -205,7 +237,7 @@ TEST(ReducedMask, OfALargeShapeHasItsEdge)
   const auto is_inside = [](double x, double y) { return (x - 61) * (x - 61) + (y - 67) * (y - 67) < 50.0 * 50.0; };
   const Image small =
       reduced(leaf_mask(128, [&](std::uint32_t x, std::uint32_t y) { return is_inside(x + 0.5, y + 0.5); }), 32,
-              ImageUse::Mask, 0.5F);
+              ImageUse::Mask, {0.5F});
   for (std::uint32_t i = 0; i < 32 * 32; i++) {
     const double x = 4.0 * (i % 32) + 2.0;
     const double y = 4.0 * (i / 32) + 2.0;

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Masks and blended textures cover their part of a picture, in their colour, at any size of the picture and of the texture."""
+import numpy
+
 from variants import decoded_srgb, expect, quad_scene
 
 VALUES = {
@@ -11,13 +13,23 @@ VALUES = {
     "samples": [1, 1, 4, 16],
     "reduced": [1, 1, 2, 4],
     "cutoff": [0.25, 0.5, 0.8],
-    # A linear filter rounds the corners of dots and fills random texels where a pixel's centre is a corner of four.
-    "filter": ["linear for stripes", "nearest"],
+    "filter": ["linear", "nearest"],
+    # As far above the cutoff as below it, or 0 and 1.
+    "alphas": ["near the cutoff", "all or nothing"],
     "colour of nothing": [(1, 0, 0), (0, 0, 0), (1, 1, 1)],
     "file": ["data URI", "GLB"],
 }
 LINEAR, NEAREST = (9729, 9987), (9728, 9986)
 GREEN = 200 / 255
+
+
+def filtered_part(alphas, cutoff):
+    """The part that a linear filter between texels, which repeat, shows: the mean of 16 x 16 points of each texel."""
+    def finer(values, axis):
+        steps = (numpy.arange(16) + 0.5) / 16
+        return numpy.stack([values * (1 - step) + numpy.roll(values, -1, axis) * step for step in steps])
+
+    return float(numpy.mean([finer(row, 0) >= cutoff for row in finer(alphas, 1)]))
 
 
 def check(program, random, of):
@@ -35,17 +47,21 @@ def check(program, random, of):
                 "holes": x % 8 >= side or y % 8 >= side}[pattern]
 
     size = of["texels"]
-    part = sum(is_covered(x, y) for y in range(size) for x in range(size)) / size ** 2
     gltf = quad_scene()
     json = gltf.json
     json["extensionsUsed"] = ["KHR_materials_unlit"]
-    # Alphas as far above the cutoff as below it, so that the filter between two texels changes sides in their middle.
     distance = min(of["cutoff"], 1 - of["cutoff"])
-    low, high = (0, 1) if of["mode"] == "BLEND" else (of["cutoff"] - distance, of["cutoff"] + distance)
+    is_near = of["mode"] == "MASK" and of["alphas"] == "near the cutoff"
+    low, high = (of["cutoff"] - distance, of["cutoff"] + distance) if is_near else (0, 1)
     texture = gltf.texture(size, lambda u, v: (0, GREEN, 0, high) if is_covered(int(u * size), int(v * size)) else
                            (*of["colour of nothing"], low))
-    has_stripes = pattern in ("columns", "rows")
-    magnified, minified = LINEAR if has_stripes and of["filter"] != "nearest" else NEAREST
+    # One sample of a pixel that has few texels is at one place between their centres, for all pixels.
+    texels_in_pixel = size / of["reduced"] / of["pixels"]
+    is_linear = of["filter"] == "linear" and (of["samples"] == 16 or texels_in_pixel >= (2 if pattern in ("columns", "rows") else 4))
+    magnified, minified = LINEAR if is_linear else NEAREST
+    alphas = numpy.array([[high if is_covered(x, y) else low for x in range(size)] for y in range(size)])
+    part = alphas.mean() if of["mode"] == "BLEND" else filtered_part(alphas, of["cutoff"]) if is_linear else \
+        (alphas >= of["cutoff"]).mean()
     json["samplers"] = [{"magFilter": magnified, "minFilter": minified}]
     json["textures"][0]["sampler"] = 0
     json["materials"][0].update(pbrMetallicRoughness={"baseColorTexture": texture}, alphaMode=of["mode"],
@@ -58,11 +74,13 @@ def check(program, random, of):
     # Without the pixels whose filter reaches over the edge.
     color = pixels[2:-2, 2:-2].mean((0, 1))
     width = of["pixels"] - 4
-    # A part of a period at the edge, or three standard deviations of independent pixels. Four samples fall on one phase of a pattern that
-    # repeats with the pixels.
-    tolerance = 0.02 + (1.5 / width if pattern == "random" else 0.25 * 8 / size * of["pixels"] / width) + (0.08 if of["samples"] == 4 else 0)
+    # A part of a period at the edge along each axis, or three standard deviations of independent pixels. The samples of a pixel fall on one
+    # phase of a pattern that repeats with the pixels.
+    axis_count = 1 if pattern in ("columns", "rows") else 2
+    tolerance = 0.02 + (1.5 / width if pattern == "random" else axis_count * 0.25 * 8 / size * of["pixels"] / width)
+    tolerance += {1: 0, 4: 0.08, 16: 0.02}[of["samples"]]
     expect(abs(color[3] - part) <= tolerance,
-           f"covers {color[3]:.4f}, not {part:.4f} to {tolerance:.3f}; {size / of['reduced'] / of['pixels']} texels in a pixel")
+           f"covers {color[3]:.4f}, not {part:.4f} to {tolerance:.3f}; {texels_in_pixel} texels in a pixel")
     green = decoded_srgb(GREEN)
     # A linear filter mixes in the colour of texels with a little alpha, as glTF has it.
     if color[3] > 0.01 and (low == 0 or magnified == NEAREST[0]):

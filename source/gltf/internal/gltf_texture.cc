@@ -209,8 +209,8 @@ namespace {
 
 struct ColorUse {
   scene::ImageUse use = scene::ImageUse::Color;
-  /** Least alpha of a covered texel, for the first mask. */
-  float mask_cutoff = 0.0F;
+  /** Of the first mask. */
+  scene::MaskCover mask{};
 };
 
 /** The images that materials of \a scene use for colours. Coverage counts before Color, and Mask before both. */
@@ -223,8 +223,8 @@ std::map<Handle<Image>, ColorUse> color_images(const Scene &scene)
       if (texture != nullptr && input.is_color) {
         ColorUse &known = images[texture->image];
         const scene::ImageUse use = scene::use_of(material, input);
-        if (use == scene::ImageUse::Mask && known.mask_cutoff == 0.0F && material.alpha > 0.0F) {
-          known.mask_cutoff = material.alpha_cutoff / material.alpha;
+        if (use == scene::ImageUse::Mask && known.mask.cutoff == 0.0F && material.alpha > 0.0F) {
+          known.mask = {material.alpha_cutoff / material.alpha, texture->magnified == scene::TextureFilter::Linear};
         }
         known.use = std::max(known.use, use);
       }
@@ -251,7 +251,7 @@ std::map<Handle<Image>, Fault> TextureImporter::decode(Progress &progress)
       Image image = pending_[i].decoder.read();
       const auto color = colors.find(pending_[i].handle);
       const ColorUse use = color == colors.end() ? ColorUse{scene::ImageUse::Data} : color->second;
-      results[i] = size_max_ > 0 ? reduced(std::move(image), size_max_, use.use, use.mask_cutoff) : std::move(image);
+      results[i] = size_max_ > 0 ? reduced(std::move(image), size_max_, use.use, use.mask) : std::move(image);
     }
     catch (const Fault &fault) {
       results[i] = fault;
