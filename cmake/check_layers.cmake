@@ -91,9 +91,11 @@ foreach(FILE ${FILES})
     continue()
   endif()
 
-  # The window, examples and tests act as the host, which owns the context.
+  # The window, examples and tests act as the host, which owns the context. Vulkan presents to windows of GLFW.
   if(FILE MATCHES "^(source/gpu/gl|source/view|examples|tests)/")
     set(GL_HEADER "^$")
+  elseif(FILE MATCHES "^source/gpu/vulkan/")
+    set(GL_HEADER "^(GL[0-9]*|GLES[0-9]*|EGL|KHR|epoxy)/")
   else()
     set(GL_HEADER "^(GL[0-9]*|GLES[0-9]*|EGL|KHR|GLFW|epoxy)/")
   endif()

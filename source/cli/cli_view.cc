@@ -26,9 +26,7 @@ void add_view(CLI::App &app)
   const auto backend = std::make_shared<std::string>("auto");
   add_backend_option(*command, *backend);
   command->callback([o, backend] {
-    if (*backend == "vulkan") {
-      throw UsageError("view: the window is drawn with OpenGL, and --backend vulkan draws no windows");
-    }
+    o->backend = gpu::backend_of(*backend);
     o->writers.png = [](const auto &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba) {
       write_png(path, size_px, rgba, {});
     };

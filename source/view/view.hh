@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf_import.hh"
+#include "gpu_create_device.hh"
 
 #include <glm/vec2.hpp>
 
@@ -40,6 +41,8 @@ struct Options {
   std::filesystem::path shaders{};
   /** gltf::ImportOptions::only_below of all scenes that are opened. */
   std::filesystem::path only_below{};
+  /** Auto, OpenGl or Vulkan. \see open_window */
+  gpu::Backend backend = gpu::Backend::Auto;
   glm::ivec2 size_px{1440, 860};
   ImageWriters writers{};
   /** Function that reads the picture of a world. */
@@ -49,8 +52,8 @@ struct Options {
 /**
  * Open a window, and return when it is closed or the script has ended. Broken files and invalid values are messages in
  * the window.
- * \throws std::runtime_error where there is no display or no folder with shaders, where a command of the script fails,
- * naming the file and the line, and, with a script, where the driver reports an error
+ * \throws std::runtime_error where there is no display, no driver or no folder with shaders, where a command of the
+ * script fails, naming the file and the line, and, with a script, where the driver reports an error
  */
 void run(const Options &options);
 

@@ -34,9 +34,8 @@ constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 
 }  // namespace
 
-App::App(const Options &options) : options_(options), window_(options.size_px, !options.script.empty())
+App::App(const Options &options) : options_(options), window_(options.backend, options.size_px, !options.script.empty())
 {
-  make_device();
   viewports_.push_back(std::make_unique<WindowViewport>());
   if (!options.shaders.empty()) {
     use_shaders(options.shaders);
@@ -45,14 +44,9 @@ App::App(const Options &options) : options_(options), window_(options.size_px, !
 
 App::~App() = default;
 
-void App::make_device()
-{
-  device_ = gpu::create_gl_device({.context = gpu::ContextKind::Host,
-                                   .sink = [this](std::string_view text) { message(std::string(text), false); }});
-}
-
 void App::make_context_anew()
 {
+  const std::string_view lost = window_.backend() == gpu::Backend::Vulkan ? "The Vulkan device" : "The OpenGL context";
   end_fly(true);
   end_transform(true);
   for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
@@ -63,27 +57,25 @@ void App::make_context_anew()
     document_->leave_device();
   }
   for (int attempt = 1;; attempt++) {
-    device_.reset();
     try {
       window_.make_context_anew();
-      make_device();
       break;
     }
     catch (const std::exception &error) {
       if (attempt == context_attempts) {
         throw std::runtime_error(
-            fmt::format("The OpenGL context was lost, and none could be made. {}{}", rescue(), error.what()));
+            fmt::format("{} was lost, and none could be made. {}{}", lost, rescue(), error.what()));
       }
     }
     // A driver may need some time after a reset.
     std::this_thread::sleep_for(context_pause);
   }
   if (document_) {
-    document_->use_device(*device_);
+    document_->use_device(window_.device());
   }
   is_device_lost_ = false;
   is_complete_ = false;
-  message("The OpenGL context was lost, and was made anew", true);
+  message(fmt::format("{} was lost, and was made anew", lost), true);
 }
 
 std::string App::rescue()
@@ -195,7 +187,7 @@ void App::begin_measurement()
     return;
   }
   try {
-    error_panel_.begin(*document_, active());
+    error_panel_.begin(*document_, active(), window_.backend());
   }
   catch (const std::exception &error) {
     report(error);
@@ -231,7 +223,7 @@ void App::show_document(scene::Scene scene)
     viewport->close();
   }
   document_.reset();
-  document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
+  document_ = std::make_unique<Document>(window_.device(), std::move(scene), settings);
   for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->look_at(*document_);
   }
@@ -319,7 +311,7 @@ void App::update_shaders()
     failures = document_->reload_shaders(*(*found)->viewport(), shader_watch_->files());
   }
   else {
-    draw::Viewport none(*device_, glm::ivec2(1));
+    draw::Viewport none(window_.device(), glm::ivec2(1));
     failures = document_->reload_shaders(none, shader_watch_->files());
   }
   for (const std::string &failure : failures) {
@@ -478,9 +470,9 @@ void App::take_events()
     window_.set_closed(false);
     leave([this] { quit(); });
   }
-  for (const std::string &text : window_.take_driver_messages()) {
-    driver_error_count_++;
-    message("OpenGL: " + text, true);
+  for (const DriverMessage &from_driver : window_.take_driver_messages()) {
+    driver_error_count_ += from_driver.is_error ? 1 : 0;
+    message(from_driver.text, from_driver.is_error);
   }
   step_fly();
   if (document_ && !document_->operation() && !ImGui::IsAnyItemActive()) {
@@ -503,6 +495,18 @@ void App::update_document()
   render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
   render_scene.update();
   window_.set_title(fmt::format("{}{} - gnomon", document_->scene().path, document_->is_saved() ? "" : "*"));
+}
+
+void App::present(const std::function<void()> &work)
+{
+  try {
+    work();
+  }
+  catch (const gpu::Error &error) {
+    report(error);
+    // Whatever the reason is, another window may show pictures.
+    is_device_lost_ = true;
+  }
 }
 
 void App::draw_frame(bool may_wait)
@@ -536,15 +540,21 @@ void App::draw_frame(bool may_wait)
     report(error);
   }
   show_window();
-  window_.end_frame();
-  if (is_device_lost_ || window_.is_context_lost()) {
+  present([this] { window_.end_frame(); });
+  is_device_lost_ |= window_.is_context_lost();
+  if (!is_device_lost_) {
+    if (screenshot_ && screenshot_->frames-- == 0) {
+      write_screenshot();
+    }
+    present([this] {
+      if (!window_.swap()) {
+        frames_to_draw_ = std::max(frames_to_draw_, 1);
+      }
+    });
+  }
+  if (is_device_lost_) {
     make_context_anew();
-    return;
   }
-  if (screenshot_ && screenshot_->frames-- == 0) {
-    write_screenshot();
-  }
-  window_.swap();
 }
 
 }  // namespace gnomon::view

@@ -179,7 +179,7 @@ class App {
   }
 
   void message(std::string text, bool is_error);
-  /** Show \a error as a message. After gpu::DeviceLost, the context is created again before the next frame. */
+  /** Show \a error as a message. After gpu::DeviceLost, the device is created again before the next frame. */
   void report(const std::exception &error);
   [[nodiscard]] const std::vector<Message> &messages() const
   {
@@ -216,7 +216,6 @@ class App {
   bool finish_open();
   void finish_measurement();
   void show_document(scene::Scene scene);
-  void make_device();
   /**
    * Replace the lost context, its device and all resources of the device. \throws std::runtime_error if that fails
    * several times; unsaved edits are then written to a file beside the scene's file, and the message names it
@@ -224,6 +223,8 @@ class App {
   void make_context_anew();
   /** Write the scene to a rescue file if it is not saved. \return a sentence that names the file; may be empty */
   [[nodiscard]] std::string rescue();
+  /** Run \a work of the window. After a failure, which becomes a message, the device is created again. */
+  void present(const std::function<void()> &work);
   void take_events();
   /** Bring the document up to date before each frame, outside of the user interface. */
   void update_document();
@@ -253,7 +254,6 @@ class App {
 
   Options options_;
   Window window_;
-  std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Document> document_;
   /** nullptr: no file is being opened. */
   std::unique_ptr<gltf::BackgroundImport> opening_;

@@ -7,26 +7,26 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace gnomon::view {
 
-/** A texture of the window's context that a viewport draws into and the user interface shows. */
+/** A texture that a viewport draws into and the user interface shows. */
 class Canvas {
  public:
-  Canvas() = default;
-  Canvas(const Canvas &) = delete;
-  Canvas &operator=(const Canvas &) = delete;
-  ~Canvas();
-
   /** Delete the texture. The size is 0 afterwards. */
   void free();
-  /** Set the size. The content is lost if the size changes. \pre size_px is at least 1x1 */
-  void resize(glm::ivec2 size_px);
+  /**
+   * Set the size. The content is lost if the size changes. \a device must outlive the texture. \pre size_px is at least
+   * 1x1 \throws gpu::Error
+   */
+  void resize(gpu::Device &device, glm::ivec2 size_px);
+  /** \pre the size is not 0, here and in read() and target() */
   void clear(const glm::vec4 &color);
   /** Replace size and content. \a rgba: rows from the bottom, four bytes for each pixel. */
-  void upload(glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
+  void upload(gpu::Device &device, glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
 
   /** The content: rows from the bottom, four bytes for each pixel. */
   [[nodiscard]] std::vector<std::uint8_t> read() const;
@@ -41,8 +41,9 @@ class Canvas {
 
  private:
   glm::ivec2 size_px_{0};
-  unsigned texture_ = 0;
-  unsigned framebuffer_ = 0;
+  /** Of texture_. */
+  gpu::Device *device_ = nullptr;
+  std::optional<draw::TargetTexture> texture_;
 };
 
 }  // namespace gnomon::view

@@ -326,9 +326,9 @@ void use_shaders(App &app, Words words)
   app.use_shaders(words[0]);
 }
 
-void lose_context(App & /*app*/, Words words)
+void lose_context(App &app, Words words)
 {
-  Window::inject_context_loss(words.empty() ? 0 : int(number(words[0])));
+  app.window().inject_context_loss(words.empty() ? 0 : int(number(words[0])));
 }
 
 void add(App &app, Words words)

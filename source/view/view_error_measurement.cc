@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "view_error_measurement.hh"
 
-#include "gpu_device.hh"
+#include "shader_check_spirv.hh"
 
 #ifdef __linux__
 #include <sys/resource.h>
@@ -26,8 +26,8 @@ void lower_priority()
 }  // namespace
 
 ErrorMeasurement::ErrorMeasurement(scene::Scene scene, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-                                   const eevee::Settings &settings)
-    : scene_(std::move(scene)), camera_(camera), size_px_(size_px), settings_(settings)
+                                   const eevee::Settings &settings, gpu::Backend backend)
+    : scene_(std::move(scene)), camera_(camera), size_px_(size_px), settings_(settings), backend_(backend)
 {
   thread_ = std::thread([this] { run(); });
 }
@@ -50,7 +50,8 @@ void ErrorMeasurement::run()
 {
   lower_priority();
   try {
-    const std::unique_ptr<gpu::Device> device = gpu::create_gl_device({.sink = [](std::string_view /*text*/) {}});
+    const std::unique_ptr<gpu::Device> device = gpu::create_device(
+        {.backend = backend_, .compile_spirv = shader_check::compile_spirv, .sink = [](std::string_view /*text*/) {}});
     untraced_ = reference::untraced_parts(scene_);
     measure::ErrorTimeHost host;
     host.progress = [this](double share_done) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_create_device.hh"
 #include "measure_error_time.hh"
 
 #include <atomic>
@@ -13,16 +14,17 @@
 namespace gnomon::view {
 
 /**
- * A measurement of error against time on a separate thread with its own device and OpenGL context, so that the window
+ * A measurement of error against time on a separate thread with its own device, so that the window
  * stays responsive. The thread has the lowest priority. Threads: call all functions on the window's thread.
  */
 class ErrorMeasurement {
  public:
   /**
-   * Start the measurement. \see measure::measure_error_time \throws std::system_error if the thread cannot be created
+   * Start the measurement on a device of \a backend. \see measure::measure_error_time \throws std::system_error if the
+   * thread cannot be created
    */
   ErrorMeasurement(scene::Scene scene, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-                   const eevee::Settings &settings);
+                   const eevee::Settings &settings, gpu::Backend backend);
   ErrorMeasurement(const ErrorMeasurement &) = delete;
   ErrorMeasurement &operator=(const ErrorMeasurement &) = delete;
   /** Cancel, and wait until the measurement has ended (\see cancel). */
@@ -55,7 +57,7 @@ class ErrorMeasurement {
   /**
    * Wait for the end. \return the parts of the scene that the ray tracer leaves out, \see reference::untraced_parts
    * \pre not called before
-   * \throws as measure::measure_error_time, and gpu::Error if the context cannot be created
+   * \throws as measure::measure_error_time, and gpu::Error if the device cannot be created
    */
   std::vector<std::string> finish();
 
@@ -66,6 +68,7 @@ class ErrorMeasurement {
   scene::PlacedCamera camera_;
   glm::ivec2 size_px_;
   eevee::Settings settings_;
+  gpu::Backend backend_;
   std::atomic<float> progress_ = 0.0F;
   std::atomic<bool> is_cancelled_ = false;
   std::atomic<bool> is_done_ = false;

@@ -123,7 +123,7 @@ void show_table(const std::vector<measure::TimedError> &points)
 
 }  // namespace
 
-void ErrorPanel::begin(const Document &document, const WindowViewport &viewport)
+void ErrorPanel::begin(const Document &document, const WindowViewport &viewport, gpu::Backend backend)
 {
   if (measurement_) {
     throw std::runtime_error("A measurement is under way");
@@ -132,7 +132,7 @@ void ErrorPanel::begin(const Document &document, const WindowViewport &viewport)
   key_ = key_of(document);
   size_px_ = viewport.size_px();
   measurement_ = std::make_unique<ErrorMeasurement>(document.scene(), viewport.camera(document), size_px_,
-                                                    document.settings().eevee);
+                                                    document.settings().eevee, backend);
 }
 
 void ErrorPanel::clear()

@@ -178,7 +178,7 @@ void App::show_tabs()
         frame_panel_.show(*document_, active());
       }
       else if (tab == "Shadow") {
-        shadow_panel_.show(*document_, active(), *device_);
+        shadow_panel_.show(*document_, active(), window_.device());
       }
       else if (error_panel_.show(*document_)) {
         begin_measurement();

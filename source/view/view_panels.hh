@@ -63,10 +63,10 @@ class FramePanel {
 class ErrorPanel {
  public:
   /**
-   * Start to measure the picture of \a viewport as eevee draws it, with the current scene and settings. \throws
-   * std::runtime_error if a measurement is running
+   * Start to measure the picture of \a viewport as eevee draws it, with the current scene and settings, on a device
+   * of \a backend. \throws std::runtime_error if a measurement is running
    */
-  void begin(const Document &document, const WindowViewport &viewport);
+  void begin(const Document &document, const WindowViewport &viewport, gpu::Backend backend);
   /** Cancel the measurement, if one is running. take then throws measure::Cancelled. */
   void cancel()
   {

@@ -203,7 +203,7 @@ void ShadowPanel::read(eevee::Engine &engine, WindowViewport &viewport, std::siz
   for (std::size_t i = 3; i < bytes.size(); i += 4) {
     bytes[i] = 255;
   }
-  canvas_.upload({picture.desc().width, picture.desc().height}, bytes);
+  canvas_.upload(device, {picture.desc().width, picture.desc().height}, bytes);
 }
 
 }  // namespace gnomon::view

@@ -130,7 +130,7 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   is_complete_ = true;
   has_failed_ = true;
 
-  canvas_.resize(size_px_);
+  canvas_.resize(render_scene.device(), size_px_);
   canvas_.clear(backdrop);
   if (!viewport_) {
     viewport_ = std::make_unique<draw::Viewport>(render_scene.device(), size_px_);

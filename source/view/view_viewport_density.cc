@@ -34,7 +34,7 @@ void WindowViewport::draw_density(Document &document, eevee::Engine &eevee, cons
   if (density_) {
     std::vector<std::uint8_t> rgba = canvas_.read();
     eevee::show_texel_density(rgba, *density_);
-    canvas_.upload(size_px_, rgba);
+    canvas_.upload(viewport_->device(), size_px_, rgba);
   }
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "view_window.hh"
 
-#include <epoxy/gl.h>
+#include "view_window_gl.hh"
+
+#include "gpu_read.hh"
+
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -20,33 +22,9 @@ namespace {
 /** Debian's fonts-dejavu-core. Without it, the user interface has its own bitmap font. */
 constexpr const char *font_path = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
-/** The driver's function while a loss is simulated. nullptr: no loss is simulated. */
-PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_of_driver = nullptr;
-/** Number of further calls of make_context_anew that fail. */
-int injected_failures = 0;
-
-std::string glfw_reason()
-{
-  const char *reason = nullptr;
-  glfwGetError(&reason);
-  return reason ? reason : "no reason given";
-}
-
 Window &window_of(GLFWwindow *window)
 {
   return *static_cast<Window *>(glfwGetWindowUserPointer(window));
-}
-
-void GLAPIENTRY take_debug_message(GLenum source, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
-                                   const GLchar *text, const void *messages)
-{
-  // A mistake in a shader's source is no error of the program; the device names its file and line.
-  if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) {
-    return;
-  }
-  if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
-    static_cast<std::vector<std::string> *>(const_cast<void *>(messages))->emplace_back(text, std::size_t(length));
-  }
 }
 
 void set_style(float scale)
@@ -76,116 +54,105 @@ void set_style(float scale)
 
 }  // namespace
 
-Window::Window(glm::ivec2 size_px, bool is_debug) : is_debug_(is_debug)
+Window::Window(gpu::Backend backend, glm::ivec2 size_px, bool is_scripted)
+    : backend_(backend), is_scripted_(is_scripted)
 {
   if (!glfwInit()) {
     throw std::runtime_error(fmt::format("view: no window: {}", glfw_reason()));
   }
   try {
     open(size_px);
+    ImGui::CreateContext();
+    ImGuiIO &io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    float scale = 1.0F;
+    glfwGetWindowContentScale(window(), &scale, nullptr);
+    if (std::filesystem::exists(font_path)) {
+      io.Fonts->AddFontFromFileTTF(font_path, 14.0F * scale);
+    }
+    set_style(scale);
+    connect();
   }
   catch (...) {
-    glfwTerminate();
+    close();
     throw;
   }
-  ImGui::CreateContext();
-  ImGuiIO &io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  float scale = 1.0F;
-  glfwGetWindowContentScale(window_, &scale, nullptr);
-  if (std::filesystem::exists(font_path)) {
-    io.Fonts->AddFontFromFileTTF(font_path, 14.0F * scale);
-  }
-  set_style(scale);
-  connect();
 }
 
 Window::~Window()
 {
-  if (window_) {
+  if (device_) {
     disconnect();
   }
-  ImGui::DestroyContext();
+  close();
+}
+
+void Window::close()
+{
+  device_.reset();
+  if (ImGui::GetCurrentContext()) {
+    ImGui::DestroyContext();
+  }
   glfwTerminate();
+  for (const DriverMessage &message : driver_messages_) {
+    gpu::send_message({}, message.text);
+  }
 }
 
 void Window::open(glm::ivec2 size_px)
 {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, is_debug_ ? GLFW_TRUE : GLFW_FALSE);
-  // Required for glGetGraphicsResetStatus to report a reset of the GPU.
-  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
-  window_ = glfwCreateWindow(size_px.x, size_px.y, "gnomon", nullptr, nullptr);
-  if (!window_) {
-    throw std::runtime_error(fmt::format("view: no window with an OpenGL 4.5 core context: {}", glfw_reason()));
-  }
-  glfwMakeContextCurrent(window_);
-  // Scripts do not wait for the vertical refresh.
-  glfwSwapInterval(is_debug_ ? 0 : 1);
-  if (is_debug_) {
-    glEnable(GL_DEBUG_OUTPUT);
-    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-    glDebugMessageCallback(take_debug_message, &driver_messages_);
-  }
-  glfwSetWindowUserPointer(window_, this);
+  device_ = open_window(backend_, size_px, is_scripted_, [this](std::string_view text, bool is_error) {
+    driver_messages_.push_back({std::string(text), is_error});
+  });
+  backend_ = device_->backend();
+  glfwSetWindowUserPointer(window(), this);
   // The user interface's own callbacks, which it sets below, call these.
-  glfwSetKeyCallback(window_, [](GLFWwindow *window, int key, int /*scancode*/, int action, int mods) {
+  glfwSetKeyCallback(window(), [](GLFWwindow *window, int key, int /*scancode*/, int action, int mods) {
     if (action != GLFW_RELEASE && !ImGui::GetIO().WantTextInput) {
       window_of(window).keys_.push_back({key, mods & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT)});
     }
   });
-  glfwSetDropCallback(window_, [](GLFWwindow *window, int count, const char **paths) {
+  glfwSetDropCallback(window(), [](GLFWwindow *window, int count, const char **paths) {
     window_of(window).dropped_.insert(window_of(window).dropped_.end(), paths, paths + count);
   });
 }
 
 void Window::connect()
 {
-  ImGui_ImplGlfw_InitForOpenGL(window_, true);
-  ImGui_ImplOpenGL3_Init();
+  renderer_.emplace(device());
+  ImGui_ImplGlfw_InitForOther(window(), true);
 }
 
 void Window::disconnect()
 {
-  ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-}
-
-bool Window::is_context_lost() const
-{
-  return glGetGraphicsResetStatus() != GL_NO_ERROR;
+  if (renderer_) {
+    ImGui_ImplGlfw_Shutdown();
+    renderer_.reset();
+  }
 }
 
 void Window::make_context_anew()
 {
-  if (reset_status_of_driver) {
-    epoxy_glGetGraphicsResetStatus = std::exchange(reset_status_of_driver, nullptr);
-  }
-  if (window_) {
-    glfwGetWindowPos(window_, &lost_place_px_.x, &lost_place_px_.y);
-    glfwGetWindowSize(window_, &lost_size_px_.x, &lost_size_px_.y);
+  if (device_) {
+    glfwGetWindowPos(window(), &lost_place_px_.x, &lost_place_px_.y);
+    glfwGetWindowSize(window(), &lost_size_px_.x, &lost_size_px_.y);
     disconnect();
-    glfwDestroyWindow(std::exchange(window_, nullptr));
+    device_.reset();
     title_.clear();
   }
-  if (injected_failures > 0) {
-    injected_failures--;
-    throw std::runtime_error("view: no window with an OpenGL 4.5 core context: injected by a script");
+  if (injected_failures_ > 0) {
+    injected_failures_--;
+    throw std::runtime_error("view: no window: injected by a script");
   }
   open(lost_size_px_);
-  glfwSetWindowPos(window_, lost_place_px_.x, lost_place_px_.y);
+  glfwSetWindowPos(window(), lost_place_px_.x, lost_place_px_.y);
   connect();
 }
 
 void Window::inject_context_loss(int failures)
 {
-  injected_failures = failures;
-  if (!reset_status_of_driver) {
-    reset_status_of_driver = epoxy_glGetGraphicsResetStatus;
-    epoxy_glGetGraphicsResetStatus = +[]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; };
-  }
+  injected_failures_ = failures;
+  device_->inject_loss();
 }
 
 void Window::begin_frame(bool waits, double seconds_max)
@@ -199,7 +166,6 @@ void Window::begin_frame(bool waits, double seconds_max)
   else {
     glfwWaitEvents();
   }
-  ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   if (!pointers_.empty()) {
     const Pointer pointer = pointers_.back();
@@ -213,44 +179,51 @@ void Window::begin_frame(bool waits, double seconds_max)
 void Window::end_frame()
 {
   ImGui::Render();
-  glClearColor(0.14F, 0.14F, 0.15F, 1.0F);
-  glClear(GL_COLOR_BUFFER_BIT);
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  has_screen_ = false;
+  const glm::ivec2 size = size_px();
+  if (size.x == 0 || size.y == 0) {
+    return;
+  }
+  if (const std::optional<WindowDevice::Screen> screen = device_->begin(size)) {
+    renderer_->draw(screen->target, screen->size_px);
+    has_screen_ = true;
+  }
 }
 
-void Window::swap()
-{
-  glfwSwapBuffers(window_);
-}
-
-std::vector<std::uint8_t> Window::read_pixels() const
+bool Window::swap()
 {
   const glm::ivec2 size = size_px();
-  std::vector<std::uint8_t> rgba(4 * std::size_t(size.x) * std::size_t(size.y));
-  glReadPixels(0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  return rgba;
+  // Nothing is seen of a window without pixels.
+  return std::exchange(has_screen_, false) ? device_->present() : size.x == 0 || size.y == 0;
+}
+
+std::vector<std::uint8_t> Window::read_pixels()
+{
+  const draw::TargetTexture picture(device(), "window", gpu::Format::RGBA8, size_px());
+  renderer_->draw(picture.target(), size_px());
+  return gpu::read_as<std::uint8_t>(device(), picture.texture());
 }
 
 bool Window::is_closed() const
 {
-  return glfwWindowShouldClose(window_) == GLFW_TRUE;
+  return glfwWindowShouldClose(window()) == GLFW_TRUE;
 }
 
 void Window::set_closed(bool is_closed)
 {
-  glfwSetWindowShouldClose(window_, is_closed ? GLFW_TRUE : GLFW_FALSE);
+  glfwSetWindowShouldClose(window(), is_closed ? GLFW_TRUE : GLFW_FALSE);
 }
 
 glm::ivec2 Window::size_px() const
 {
   glm::ivec2 size(0);
-  glfwGetFramebufferSize(window_, &size.x, &size.y);
+  glfwGetFramebufferSize(window(), &size.x, &size.y);
   return size;
 }
 
 void Window::resize(glm::ivec2 size_px)
 {
-  glfwSetWindowSize(window_, size_px.x, size_px.y);
+  glfwSetWindowSize(window(), size_px.x, size_px.y);
 }
 
 void Window::set_title(const std::string &title)
@@ -258,18 +231,18 @@ void Window::set_title(const std::string &title)
   // Each change of the title causes an event, which would end the next wait.
   if (title != title_) {
     title_ = title;
-    glfwSetWindowTitle(window_, title.c_str());
+    glfwSetWindowTitle(window(), title.c_str());
   }
 }
 
 bool Window::is_key_down(int key) const
 {
-  return !ImGui::GetIO().WantTextInput && glfwGetKey(window_, key) == GLFW_PRESS;
+  return !ImGui::GetIO().WantTextInput && glfwGetKey(window(), key) == GLFW_PRESS;
 }
 
 void Window::capture_pointer(bool is_captured)
 {
-  glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+  glfwSetInputMode(window(), GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
   // The user interface ignores a hidden pointer.
   int &flags = ImGui::GetIO().ConfigFlags;
   flags = is_captured ? flags | ImGuiConfigFlags_NoMouse : flags & ~ImGuiConfigFlags_NoMouse;
@@ -292,7 +265,7 @@ std::vector<std::filesystem::path> Window::take_dropped()
   return std::exchange(dropped_, {});
 }
 
-std::vector<std::string> Window::take_driver_messages()
+std::vector<DriverMessage> Window::take_driver_messages()
 {
   return std::exchange(driver_messages_, {});
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/vec2.hpp>
+#include "view_interface.hh"
+#include "view_window_device.hh"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
-
-struct GLFWwindow;
 
 namespace gnomon::view {
 
@@ -20,46 +20,63 @@ struct KeyPress {
   bool operator==(const KeyPress &) const = default;
 };
 
+/** A message of the driver or of the device. */
+struct DriverMessage {
+  std::string text;
+  bool is_error = false;
+};
+
 /**
- * The window, its OpenGL context and the state of the user interface. The context is current while the object exists.
- * Only one object may exist at a time.
+ * The window, its device and the state of the user interface. With OpenGL, the context is current while the object
+ * exists. Only one object may exist at a time.
  */
 class Window {
  public:
-  /**
-   * \a is_debug: the driver reports its errors to take_driver_messages.
-   * \throws std::runtime_error if there is no display or no OpenGL 4.5 core context
-   */
-  Window(glm::ivec2 size_px, bool is_debug);
+  /** \see open_window \throws std::runtime_error if there is no display, or as open_window */
+  Window(gpu::Backend backend, glm::ivec2 size_px, bool is_scripted);
   Window(const Window &) = delete;
   Window &operator=(const Window &) = delete;
   ~Window();
+
+  /** \pre there is a window, as for all functions but make_context_anew */
+  [[nodiscard]] gpu::Device &device()
+  {
+    return device_->device();
+  }
+  /** The graphics API of the device: OpenGl or Vulkan. */
+  [[nodiscard]] gpu::Backend backend() const
+  {
+    return backend_;
+  }
 
   /**
    * Process pending events and begin a frame of the user interface. \a waits: first wait for an event. \a seconds_max:
    * maximum wait; 0: no limit.
    */
   void begin_frame(bool waits, double seconds_max);
-  /** Draw the user interface into the back buffer. */
+  /** Draw the user interface into the back buffer. \throws gpu::Error */
   void end_frame();
-  /** Show the back buffer. */
-  void swap();
-  /** The back buffer: rows from the bottom, four bytes each. */
-  [[nodiscard]] std::vector<std::uint8_t> read_pixels() const;
+  /** Show the back buffer. \return false: the frame may not be seen, and is to be drawn again \throws gpu::Error */
+  bool swap();
+  /** What the last frame shows: rows from the bottom, four bytes for each pixel. \throws gpu::Error */
+  [[nodiscard]] std::vector<std::uint8_t> read_pixels();
 
   /** Whether the driver has lost the context. Drawing then has no effect. */
-  [[nodiscard]] bool is_context_lost() const;
+  [[nodiscard]] bool is_context_lost() const
+  {
+    return device_->is_lost();
+  }
   /**
-   * Replace window and context. Position, size and the state of the user interface stay; objects of the old context are
-   * lost. \pre no frame of the user interface has begun \throws std::runtime_error as the constructor; there is then no
-   * window, and only this function or the destructor may be called
+   * Replace window, context and device. Position, size and the state of the user interface stay; resources of the old
+   * device must be destroyed before. \pre no frame of the user interface has begun \throws std::runtime_error as the
+   * constructor; there is then no window, and only this function or the destructor may be called
    */
   void make_context_anew();
   /**
    * For scripts: simulate a GPU reset, reported until make_context_anew succeeds. The first \a failures calls of
    * make_context_anew fail.
    */
-  static void inject_context_loss(int failures);
+  void inject_context_loss(int failures);
 
   /** Whether the user has closed the window. */
   [[nodiscard]] bool is_closed() const;
@@ -86,23 +103,37 @@ class Window {
 
   /** Files dropped on the window since the last call. */
   [[nodiscard]] std::vector<std::filesystem::path> take_dropped();
-  /** Errors that the driver reported since the last call. */
-  [[nodiscard]] std::vector<std::string> take_driver_messages();
+  /** Messages since the last call. */
+  [[nodiscard]] std::vector<DriverMessage> take_driver_messages();
 
  private:
   struct Pointer {
     glm::ivec2 at_px{0};
     bool is_down = false;
   };
-  /** The window with its context. \throws std::runtime_error */
+  [[nodiscard]] GLFWwindow *window() const
+  {
+    return device_->window();
+  }
+  /** The window with its device. \throws std::runtime_error */
   void open(glm::ivec2 size_px);
-  /** Connect the user interface to the window. */
+  /** Connect the user interface to the window. \throws gpu::Error */
   void connect();
   void disconnect();
+  /** Destroy the window, and print messages that nobody has taken. */
+  void close();
 
-  bool is_debug_;
-  /** nullptr: make_context_anew has failed. */
-  GLFWwindow *window_ = nullptr;
+  /** At first that of the constructor, then that of the device. */
+  gpu::Backend backend_;
+  bool is_scripted_;
+  std::vector<DriverMessage> driver_messages_;
+  /** nullptr: make_context_anew has failed; it may also have failed where renderer_ is empty. */
+  std::unique_ptr<WindowDevice> device_;
+  std::optional<InterfaceRenderer> renderer_;
+  /** The back buffer of this frame has been drawn. */
+  bool has_screen_ = false;
+  /** Number of further calls of make_context_anew that fail. */
+  int injected_failures_ = 0;
   std::string title_;
   /** The place of the window that was lost last. */
   glm::ivec2 lost_place_px_{0};
@@ -111,7 +142,6 @@ class Window {
   std::vector<std::filesystem::path> dropped_;
   /** States of the pointer that drag_pointer still has to show; the last element is the next. */
   std::vector<Pointer> pointers_;
-  std::vector<std::string> driver_messages_;
 };
 
 }  // namespace gnomon::view

@@ -87,7 +87,7 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
                                       "plan x.glb -o jobs --backend null",
                                       "report x.glb -o out --backend null",
                                       "stability -o out --backend null",
-                                      "view --backend vulkan",
+                                      "view --backend null",
                                       "render x.glb -o x.png --shadow-size -4",
                                       "render x.glb -o x.png --cascade-lambda nan",
                                       "bench",

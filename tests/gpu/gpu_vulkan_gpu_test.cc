@@ -3,6 +3,7 @@
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
 
+#include "gpu_swapchain.hh"
 #include "vulkan/vulkan_device.hh"
 
 #include <regex>
@@ -79,6 +80,12 @@ TEST_F(VulkanGpu, WhatIsOfAHostIsRefusedByName)
   list.end_pass();
   test::expect_contains(refused([&] { device->submit(list); }), "pass 'onto theirs'");
   EXPECT_EQ(drawn(*device, 3), std::vector<glm::vec4>(4, glm::vec4(3)));
+}
+
+TEST_F(VulkanGpu, ASwapchainNeedsAWindow)
+{
+  test::expect_contains(test::error_of([&] { static_cast<void>(create_swapchain(*device, true)); }),
+                        "swapchain: the device is not made for a window");
 }
 
 TEST_F(VulkanGpu, SrgbAttachmentsEncodeOnlyInPassesThatAskForIt)
@@ -183,7 +190,8 @@ class VulkanFailure : public testing::Test {
   }
   void make()
   {
-    auto made = std::make_unique<VulkanContext>(true, [](std::string_view message) { ADD_FAILURE() << message; });
+    auto made =
+        std::make_unique<VulkanContext>(true, nullptr, [](std::string_view message) { ADD_FAILURE() << message; });
     context = made.get();
     device =
         std::make_unique<VulkanDevice>(std::move(made), VulkanDeviceDesc{.compile_spirv = shader_check::compile_spirv});

@@ -4,9 +4,10 @@
 #include "gpu_error.hh"
 #include "trace.hh"
 
-#include <fmt/ranges.h>
-
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <dlfcn.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -150,26 +151,6 @@ std::vector<std::string> missing_version(std::uint32_t version)
   return {fmt::format("Vulkan 1.3 (it has {}.{})", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
 }
 
-/** What \a device lacks, by name. */
-std::vector<std::string> missing_in(const VulkanInstanceTable &vk, VkPhysicalDevice device,
-                                    const VkPhysicalDeviceProperties &properties)
-{
-  std::vector<std::string> missing = missing_version(properties.apiVersion);
-  if (!missing.empty()) {
-    return missing;
-  }
-  if (std::ranges::none_of(queue_families(vk, device), has_graphics)) {
-    missing.emplace_back("a queue for graphics");
-  }
-  if (!has_extension(vk, device, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME)) {
-    missing.emplace_back(VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME);
-  }
-  Features features;
-  vk.vkGetPhysicalDeviceFeatures2(device, &features.core);
-  std::ranges::move(features.missing(), std::back_inserter(missing));
-  return missing;
-}
-
 /** Devices with a greater number are preferred. */
 int rank_of(VkPhysicalDeviceType type)
 {
@@ -195,11 +176,15 @@ PFN_vkGetInstanceProcAddr load_loader()
 
 }  // namespace
 
-VulkanContext::VulkanContext(bool is_debug, std::function<void(std::string_view message)> sink) : sink_(std::move(sink))
+VulkanContext::VulkanContext(bool is_debug, GLFWwindow *window, std::function<void(std::string_view message)> sink)
+    : sink_(std::move(sink)), window_(window)
 {
   const trace::Span span("Vulkan device");
   try {
     create_instance(is_debug);
+    if (window_) {
+      create_surface();
+    }
     create_device();
     check_messages("Vulkan");
   }
@@ -261,6 +246,10 @@ void VulkanContext::load_instance()
   }
   GNOMON_VULKAN_INSTANCE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
+  // Of extensions that a window needs; all others have none of them.
+#define GNOMON_VULKAN_LOAD(NAME) surfaces.NAME = instance_function<PFN_##NAME>(#NAME);
+  GNOMON_VULKAN_SURFACE_FUNCTIONS(GNOMON_VULKAN_LOAD)
+#undef GNOMON_VULKAN_LOAD
 }
 
 void VulkanContext::load_device()
@@ -270,6 +259,10 @@ void VulkanContext::load_device()
     throw Error("Vulkan: the device has no {}: is the instance made for Vulkan 1.3?", #NAME);   \
   }
   GNOMON_VULKAN_DEVICE_FUNCTIONS(GNOMON_VULKAN_LOAD)
+#undef GNOMON_VULKAN_LOAD
+#define GNOMON_VULKAN_LOAD(NAME) \
+  swapchains.NAME = reinterpret_cast<PFN_##NAME>(instance.vkGetDeviceProcAddr(device, #NAME));
+  GNOMON_VULKAN_SWAPCHAIN_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
 }
 
@@ -301,6 +294,9 @@ void VulkanContext::destroy()
     instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_,
                                                                                               nullptr);
   }
+  if (surface != VK_NULL_HANDLE) {
+    surfaces.vkDestroySurfaceKHR(instance_, surface, nullptr);
+  }
   if (instance.vkDestroyInstance) {
     instance.vkDestroyInstance(instance_, nullptr);
   }
@@ -319,15 +315,23 @@ void VulkanContext::create_instance(bool is_debug)
   validation.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
   validation.enabledValidationFeatureCount = 1;
   validation.pEnabledValidationFeatures = &synchronisation;
-  const std::vector<const char *> extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                                VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  std::vector<const char *> extensions;
   if (is_debug) {
     info.pNext = &validation;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &validation_layer;
-    info.enabledExtensionCount = std::uint32_t(extensions.size());
-    info.ppEnabledExtensionNames = extensions.data();
+    extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   }
+  if (window_) {
+    std::uint32_t count = 0;
+    const char **names = glfwGetRequiredInstanceExtensions(&count);
+    if (!names) {
+      throw TransientError("Vulkan: there is no driver that presents to windows");
+    }
+    extensions.insert(extensions.end(), names, names + count);
+  }
+  info.enabledExtensionCount = std::uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   const VkResult result = instance_function<PFN_vkCreateInstance>("vkCreateInstance")(&info, nullptr, &instance_);
   if (result == VK_ERROR_LAYER_NOT_PRESENT) {
     throw Error("Vulkan: the validation layers are not installed ({})", validation_layer);
@@ -349,6 +353,66 @@ void VulkanContext::create_instance(bool is_debug)
   }
 }
 
+void VulkanContext::create_surface()
+{
+  const VkResult result = glfwCreateWindowSurface(instance_, window_, nullptr, &surface);
+  if (result != VK_SUCCESS) {
+    surface = VK_NULL_HANDLE;
+    throw TransientError("Vulkan: the window has no surface: VkResult {}", int(result));
+  }
+}
+
+void VulkanContext::make_surface_anew()
+{
+  surfaces.vkDestroySurfaceKHR(instance_, std::exchange(surface, VK_NULL_HANDLE), nullptr);
+  create_surface();
+  if (!can_present(physical_device, queue_family)) {
+    throw TransientError("Vulkan: the device cannot present to the new surface of the window");
+  }
+}
+
+bool VulkanContext::can_present(VkPhysicalDevice candidate, std::uint32_t family)
+{
+  VkBool32 is_supported = VK_TRUE;
+  if (window_) {
+    check(surfaces.vkGetPhysicalDeviceSurfaceSupportKHR(candidate, family, surface, &is_supported),
+          "Vulkan: the window");
+  }
+  return is_supported == VK_TRUE;
+}
+
+std::uint32_t VulkanContext::usable_family(VkPhysicalDevice candidate)
+{
+  const std::vector<VkQueueFamilyProperties> families = queue_families(instance, candidate);
+  std::uint32_t family = 0;
+  while (family < families.size() && !(has_graphics(families[family]) && can_present(candidate, family))) {
+    family++;
+  }
+  return family;
+}
+
+std::vector<std::string> VulkanContext::missing_in(VkPhysicalDevice candidate,
+                                                   const VkPhysicalDeviceProperties &properties)
+{
+  std::vector<std::string> missing = missing_version(properties.apiVersion);
+  if (!missing.empty()) {
+    return missing;
+  }
+  if (usable_family(candidate) == queue_families(instance, candidate).size()) {
+    missing.emplace_back(window_ ? "a queue that draws and presents to the window" : "a queue for graphics");
+  }
+  if (!has_extension(instance, candidate, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME)) {
+    missing.emplace_back(VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME);
+  }
+  if (window_ && !has_extension(instance, candidate, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
+    missing.emplace_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  }
+  Features features;
+  instance.vkGetPhysicalDeviceFeatures2(candidate, &features.core);
+  std::ranges::move(features.missing(), std::back_inserter(missing));
+  return missing;
+}
+
 void VulkanContext::create_device()
 {
   std::uint32_t count = 0;
@@ -359,7 +423,7 @@ void VulkanContext::create_device()
   int rank = -1;
   for (VkPhysicalDevice candidate : devices) {
     const VkPhysicalDeviceProperties properties = properties_of(instance, candidate);
-    const std::vector<std::string> missing = missing_in(instance, candidate, properties);
+    const std::vector<std::string> missing = missing_in(candidate, properties);
     if (!missing.empty()) {
       refused.push_back(fmt::format("{} lacks {}", properties.deviceName, fmt::join(missing, ", ")));
     }
@@ -372,8 +436,7 @@ void VulkanContext::create_device()
     throw TransientError("Vulkan: {}",
                          refused.empty() ? "there is no device" : fmt::format("{}", fmt::join(refused, "; ")));
   }
-  const std::vector<VkQueueFamilyProperties> families = queue_families(instance, physical_device);
-  queue_family = std::uint32_t(std::ranges::find_if(families, has_graphics) - families.begin());
+  queue_family = usable_family(physical_device);
 
   Features present;
   instance.vkGetPhysicalDeviceFeatures2(physical_device, &present.core);
@@ -391,14 +454,17 @@ void VulkanContext::create_device()
   queues.queueFamilyIndex = queue_family;
   queues.queueCount = 1;
   queues.pQueuePriorities = &priority;
-  const char *const extension = VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME;
+  std::vector<const char *> extensions = {VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME};
+  if (window_) {
+    extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  }
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.pNext = &used.core;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queues;
-  info.enabledExtensionCount = 1;
-  info.ppEnabledExtensionNames = &extension;
+  info.enabledExtensionCount = std::uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   check(instance.vkCreateDevice(physical_device, &info, nullptr, &device),
         fmt::format("Vulkan: {}", properties_of(instance, physical_device).deviceName));
   load_device();

@@ -11,13 +11,18 @@
 #include <string_view>
 #include <vector>
 
+struct GLFWwindow;
+
 namespace gnomon::gpu {
 
 /** A device that has one queue, its own or the host's, and the messages of the validation layers. */
 class VulkanContext {
  public:
-  /** \a sink: receives messages of the validation layers about the end of the device. \throws Error */
-  VulkanContext(bool is_debug, std::function<void(std::string_view message)> sink);
+  /**
+   * \a window: the queue can present to it; nullptr: to none. \a sink: receives messages of the validation layers about
+   * the end of the device. \throws Error
+   */
+  VulkanContext(bool is_debug, GLFWwindow *window, std::function<void(std::string_view message)> sink);
   /** The device of a host. \throws Error that names what it lacks */
   explicit VulkanContext(const VulkanHost &host);
   ~VulkanContext();
@@ -31,6 +36,10 @@ class VulkanContext {
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
+  /** Of the window, with the functions of surfaces and swapchains. VK_NULL_HANDLE: there is no window. */
+  VkSurfaceKHR surface = VK_NULL_HANDLE;
+  VulkanSurfaceTable surfaces{};
+  VulkanSwapchainTable swapchains{};
   /** Valid bits of timestamps; 0: the queue has none. */
   int timestamp_bits = 0;
   VkPhysicalDeviceLimits limits{};
@@ -43,6 +52,8 @@ class VulkanContext {
 
   /** Uses the queue. */
   [[nodiscard]] VkResult submit(const VkSubmitInfo2 &info);
+  /** Replace the lost surface of the window, which has no swapchain. \throws Error if the queue cannot present to it */
+  void make_surface_anew();
   /** \throws Error that begins with \a what if \a result is a failure: TransientError, DeviceLost */
   void check(VkResult result, std::string_view what);
   /** For functions that do not throw: check_lost() throws afterwards if \a result says that the device is lost. */
@@ -68,7 +79,15 @@ class VulkanContext {
                                             VkDebugUtilsMessageTypeFlagsEXT types,
                                             const VkDebugUtilsMessengerCallbackDataEXT *data, void *user);
   void create_instance(bool is_debug);
+  void create_surface();
   void create_device();
+  /** Whether a queue of \a family presents to the window, or there is no window. */
+  [[nodiscard]] bool can_present(VkPhysicalDevice candidate, std::uint32_t family);
+  /** The first family whose queues draw and present; the number of families: there is none. */
+  [[nodiscard]] std::uint32_t usable_family(VkPhysicalDevice candidate);
+  /** What \a candidate lacks, by name. */
+  [[nodiscard]] std::vector<std::string> missing_in(VkPhysicalDevice candidate,
+                                                    const VkPhysicalDeviceProperties &properties);
   /** Sets what follows from the physical device and from the features that are enabled. */
   void describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output);
   /** Load the functions of the instance, and of the device. \throws Error that names the first one that is missing */
@@ -84,6 +103,7 @@ class VulkanContext {
   void destroy();
 
   std::function<void(std::string_view message)> sink_;
+  GLFWwindow *window_ = nullptr;
   PFN_vkGetInstanceProcAddr loader_ = nullptr;
   VkInstance instance_ = VK_NULL_HANDLE;
   /** The instance and the device are the host's. */

@@ -226,7 +226,7 @@ std::optional<double> VulkanDevice::seconds_take(ResourceId query)
   return std::exchange(timer.seconds, 0.0);
 }
 
-std::unique_ptr<Device> create_vulkan_device(const VulkanDeviceDesc &desc)
+std::unique_ptr<Device> VulkanDevice::create(const VulkanDeviceDesc &desc, GLFWwindow *window)
 {
   if (!desc.compile_spirv) {
     throw Error("Vulkan: the program has no compiler of shaders for it");
@@ -235,9 +235,14 @@ std::unique_ptr<Device> create_vulkan_device(const VulkanDeviceDesc &desc)
     return std::make_unique<VulkanDevice>(std::make_unique<VulkanContext>(*desc.host), desc);
   }
   return std::make_unique<VulkanDevice>(
-      std::make_unique<VulkanContext>(desc.is_debug,
+      std::make_unique<VulkanContext>(desc.is_debug, window,
                                       [sink = desc.sink](std::string_view text) { send_message(sink, text); }),
       desc);
+}
+
+std::unique_ptr<Device> create_vulkan_device(const VulkanDeviceDesc &desc)
+{
+  return VulkanDevice::create(desc, nullptr);
 }
 
 }  // namespace gnomon::gpu

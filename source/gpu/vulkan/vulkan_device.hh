@@ -19,10 +19,27 @@ class VulkanDevice final : public Device {
   VulkanDevice(std::unique_ptr<VulkanContext> context, const VulkanDeviceDesc &desc);
   ~VulkanDevice() override;
 
+  /** \a window: the device can present to it; nullptr: to none. \throws Error */
+  [[nodiscard]] static std::unique_ptr<Device> create(const VulkanDeviceDesc &desc, GLFWwindow *window);
+
   void finish() override;
   std::string description() const override
   {
     return context_->description;
+  }
+  [[nodiscard]] VulkanContext &context()
+  {
+    return *context_;
+  }
+  /** Of a lost device: destroy at once what was destroyed while the device used it. */
+  void destroy_retired()
+  {
+    submissions_.end();
+  }
+  /** Send \a text to the message sink. */
+  void tell(std::string_view text) const
+  {
+    message(text);
   }
 
  private:

@@ -34,6 +34,15 @@
   DO(vkGetQueryPoolResults) DO(vkGetSemaphoreCounterValue) DO(vkInvalidateMappedMemoryRanges) DO(vkMapMemory) \
   DO(vkQueueSubmit2) DO(vkResetDescriptorPool) DO(vkResetQueryPool) DO(vkUpdateDescriptorSets) \
   DO(vkWaitSemaphores)
+
+// With a window alone.
+#define GNOMON_VULKAN_SURFACE_FUNCTIONS(DO) \
+  DO(vkDestroySurfaceKHR) DO(vkGetPhysicalDeviceSurfaceCapabilitiesKHR) DO(vkGetPhysicalDeviceSurfaceFormatsKHR) \
+  DO(vkGetPhysicalDeviceSurfacePresentModesKHR) DO(vkGetPhysicalDeviceSurfaceSupportKHR)
+
+#define GNOMON_VULKAN_SWAPCHAIN_FUNCTIONS(DO) \
+  DO(vkAcquireNextImageKHR) DO(vkCreateFence) DO(vkCreateSwapchainKHR) DO(vkDestroyFence) DO(vkDestroySwapchainKHR) \
+  DO(vkDeviceWaitIdle) DO(vkGetSwapchainImagesKHR) DO(vkQueuePresentKHR) DO(vkResetFences) DO(vkWaitForFences)
 // clang-format on
 
 namespace gnomon::gpu {
@@ -46,6 +55,14 @@ struct VulkanInstanceTable {
 
 struct VulkanDeviceTable {
   GNOMON_VULKAN_DEVICE_FUNCTIONS(GNOMON_VULKAN_MEMBER)
+};
+
+struct VulkanSurfaceTable {
+  GNOMON_VULKAN_SURFACE_FUNCTIONS(GNOMON_VULKAN_MEMBER)
+};
+
+struct VulkanSwapchainTable {
+  GNOMON_VULKAN_SWAPCHAIN_FUNCTIONS(GNOMON_VULKAN_MEMBER)
 };
 
 #undef GNOMON_VULKAN_MEMBER
