@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_world_occlusion.hh"
+
+#include "scene_parallel.hh"
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace gnomon::eevee {
+
+namespace {
+
+/** Most probes along an axis. */
+constexpr int axis_probes = 8;
+constexpr int probe_rays = 256;
+
+/** Direction number \a i of \a count, evenly over the sphere (spiral of Fibonacci). \a turn: in turns around the y
+ * axis. */
+glm::vec3 spiral_direction(int i, int count, double turn)
+{
+  const double y = 1.0 - (2.0 * i + 1.0) / count;
+  const double across = std::sqrt(std::max(1.0 - y * y, 0.0));
+  const double azimuth = 2.0 * std::numbers::pi * (i / std::numbers::phi + turn);
+  return {float(across * std::cos(azimuth)), float(y), float(across * std::sin(azimuth))};
+}
+
+/** Direction of a ray of a probe. Probes have other directions, so that a mean over some probes has more of them. */
+glm::vec3 ray_direction(std::size_t probe, int ray)
+{
+  const double turn = double(probe) / (std::numbers::phi * std::numbers::phi);
+  return spiral_direction(ray, probe_rays, turn - std::floor(turn));
+}
+
+/** Luminance of the rest of \a world from \a direction. */
+float luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
+{
+  constexpr glm::ivec2 size = render_scene::WorldLight::size;
+  const glm::ivec2 texel(shared::equirectangular(direction) * glm::vec2(size));
+  const glm::ivec2 inside = glm::clamp(texel, glm::ivec2(0), size - 1);
+  return glm::dot(world.rest[std::size_t(inside.y * size.x + inside.x)], glm::vec3(0.2126F, 0.7152F, 0.0722F));
+}
+
+bool meets(const scene::Bounds &box, const glm::vec3 &origin, const glm::vec3 &direction)
+{
+  const glm::vec3 a = (box.min - origin) / direction;
+  const glm::vec3 b = (box.max - origin) / direction;
+  const glm::vec3 low = glm::min(a, b);
+  const glm::vec3 high = glm::max(a, b);
+  const float enter = std::max({low.x, low.y, low.z, 0.0F});
+  // A ray within a face gives NaN, for which the result is true.
+  return !(enter > 1.001F * std::min({high.x, high.y, high.z}));
+}
+
+glm::vec3 quotient_or_one(const glm::vec3 &part, const glm::vec3 &whole)
+{
+  return glm::mix(glm::vec3(1.0F), part / glm::max(whole, glm::vec3(1e-30F)), glm::greaterThan(whole, glm::vec3(0.0F)));
+}
+
+}  // namespace
+
+glm::ivec3 WorldOcclusion::place_of(std::size_t probe) const
+{
+  const int index = int(probe);
+  return {index % count_.x, index / count_.x % count_.y, index / (count_.x * count_.y)};
+}
+
+void WorldOcclusion::place(const scene::Bounds &bounds_ws)
+{
+  bounds_ws_ = bounds_ws;
+  const glm::vec3 extent = glm::max(bounds_ws.max - bounds_ws.min, glm::vec3(1e-6F));
+  // Cells that are as cubic as can be.
+  float edge = std::max({extent.x, extent.y, extent.z}) / float(axis_probes);
+  do {
+    count_ = glm::clamp(glm::ivec3(glm::ceil(extent / edge)), 2, axis_probes);
+    edge *= 1.02F;
+  } while (probe_count() > WORLD_PROBE_MAX);
+  step_ = extent / glm::vec3(count_);
+  first_ws_ = bounds_ws.min + 0.5F * step_;
+}
+
+void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
+{
+  std::atomic<std::uint64_t> traced = 0;
+  scene::parallel_for(std::size_t(probe_count()), 0, [&](std::size_t probe) {
+    const glm::vec3 position_ws = first_ws_ + glm::vec3(place_of(probe)) * step_;
+    std::uint64_t count = 0;
+    for (int ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = ray_direction(probe, ray);
+      if (std::ranges::any_of(changed, [&](const scene::Bounds &box) { return meets(box, position_ws, direction); })) {
+        hits_[probe * probe_rays + std::size_t(ray)] = casters_.trace(position_ws, direction);
+        count++;
+      }
+    }
+    traced += count;
+  });
+  rays_traced_ += traced;
+}
+
+void WorldOcclusion::add_up(const render_scene::WorldLight &world)
+{
+  whole_positive_ = whole_negative_ = glm::vec3(0.0F);
+  probes_.assign(std::size_t(probe_count()), {});
+  for (std::size_t probe = 0; probe < probes_.size(); probe++) {
+    const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
+    const auto backs = std::ranges::count(hits, RayHit::Back);
+    const auto fronts = std::ranges::count(hits, RayHit::Front);
+    // Below a ground of one side, half of the rays meet its back.
+    probes_[probe].is_valid = 4 * backs < probe_rays || backs < 4 * fronts;
+    glm::vec3 positive(0.0F);
+    glm::vec3 negative(0.0F);
+    glm::vec3 all_positive(0.0F);
+    glm::vec3 all_negative(0.0F);
+    for (int ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = ray_direction(probe, ray);
+      const float light = luminance(world, direction);
+      const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
+      const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
+      const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
+      all_positive += light * along;
+      all_negative += light * against;
+      positive += part * along;
+      negative += part * against;
+    }
+    // Quotients of sums over the same rays: where nothing blocks any, they are exactly 1.
+    probes_[probe].positive = quotient_or_one(positive, all_positive);
+    probes_[probe].negative = quotient_or_one(negative, all_negative);
+    whole_positive_ += all_positive;
+    whole_negative_ += all_negative;
+  }
+}
+
+void WorldOcclusion::fill_bodies()
+{
+  bool is_any_filled = true;
+  while (is_any_filled) {
+    is_any_filled = false;
+    const std::vector<Probe> last = probes_;
+    for (std::size_t i = 0; i < last.size(); i++) {
+      Probe sum{glm::vec3(0.0F), glm::vec3(0.0F)};
+      float count = 0.0F;
+      const glm::ivec3 place = place_of(i);
+      for (int side = 0; side < 6 && !last[i].is_valid; side++) {
+        glm::ivec3 beside = place;
+        beside[side / 2] += side % 2 == 0 ? 1 : -1;
+        if (beside != glm::clamp(beside, glm::ivec3(0), count_ - 1)) {
+          continue;
+        }
+        const Probe &other = last[std::size_t((beside.z * count_.y + beside.y) * count_.x + beside.x)];
+        if (other.is_valid) {
+          sum.positive += other.positive;
+          sum.negative += other.negative;
+          count += 1.0F;
+        }
+      }
+      if (count > 0.0F) {
+        probes_[i] = {sum.positive / count, sum.negative / count};
+        is_any_filled = true;
+      }
+    }
+  }
+}
+
+void WorldOcclusion::update(const render_scene::RenderScene &scene)
+{
+  const std::vector<scene::Bounds> changed = casters_.update(scene);
+  const scene::Bounds bounds_ws = scene.bounds();
+  if (casters_.empty() || scene.world()->rest_directions.empty()) {
+    count_ = glm::ivec3(0);
+    return;
+  }
+  if (probe_count() == 0 || bounds_ws.min != bounds_ws_.min || bounds_ws.max != bounds_ws_.max) {
+    place(bounds_ws);
+    hits_.assign(std::size_t(probe_count()) * probe_rays, RayHit::None);
+    trace(std::span(&bounds_ws, 1));
+  }
+  else {
+    trace(changed);
+  }
+  add_up(*scene.world());
+  fill_bodies();
+}
+
+void WorldOcclusion::write(shared::WorldBlock &block) const
+{
+  block.probe_count = glm::vec4(count_, 0.0F);
+  block.probe_scale = glm::vec4(1.0F / step_, 0.0F);
+  block.probe_offset = glm::vec4(-first_ws_ / step_, 0.0F);
+  block.whole_positive = glm::vec4(whole_positive_, 0.0F);
+  block.whole_negative = glm::vec4(whole_negative_, 0.0F);
+  for (std::size_t i = 0; i < std::size_t(probe_count()); i++) {
+    block.probes[2 * i] = glm::vec4(glm::sqrt(probes_[i].positive), 0.0F);
+    block.probes[2 * i + 1] = glm::vec4(glm::sqrt(probes_[i].negative), 0.0F);
+  }
+}
+
+}  // namespace gnomon::eevee
