@@ -73,8 +73,8 @@ inline constexpr std::uint32_t host_stride_bytes_max = 2048;
 
 /** A vertex stream in a buffer of the host: as many components for each vertex as the stream has in a BatchDesc. */
 struct HostStream {
-  /** OpenGL name of the buffer; 0: there is no such stream. */
-  std::uint32_t buffer = 0;
+  /** 0: there is no such stream. */
+  HostHandle buffer = 0;
   /** The offset of the first vertex, and the stride from one vertex to the next, which is not 0. */
   std::uint32_t offset_bytes = 0;
   std::uint32_t stride_bytes = 0;
@@ -84,9 +84,11 @@ struct HostStream {
 };
 
 /**
- * Triangles, lines or points in buffers that the host created. Requires ContextKind::Host. This is plain data, and the
- * host keeps the ownership. The buffers must live until the last submission of a list that draws them. The host may
- * write them between calls.
+ * Triangles, lines or points in buffers that the host created. Requires ContextKind::Host, or a VulkanHost; its buffers
+ * need the usages VERTEX_BUFFER and INDEX_BUFFER. This is plain data, and the host keeps the ownership. The buffers
+ * must live until the last submission of a list that draws them, and with Vulkan until the device has executed it. The
+ * host may write them between calls; with Vulkan, it makes the writes visible to vertex inputs, and waits for the draws
+ * before it writes.
  */
 struct HostBatch {
   /** Required. Object space, metres. */
@@ -101,8 +103,8 @@ struct HostBatch {
   HostStream tangents{};
   HostStream colors{};
   std::uint32_t vertex_count = 0;
-  /** OpenGL name of the buffer of indices; not 0. An index that is not below `vertex_count` has an undefined result. */
-  std::uint32_t index_buffer = 0;
+  /** The buffer of indices; not 0. An index that is not below `vertex_count` has an undefined result. */
+  HostHandle index_buffer = 0;
   /** A multiple of the size of an index. */
   std::uint32_t index_offset_bytes = 0;
   /** 0: nothing is drawn. */

@@ -539,8 +539,8 @@ struct VulkanDeviceDesc {
 };
 
 /**
- * Create a device that uses Vulkan 1.3. It can draw into images that the host owns (HostImage). It cannot use other
- * resources of the host: calls with HostBatch, HostTexture and HostFramebuffer throw Error.
+ * Create a device that uses Vulkan 1.3. With a VulkanHost, it can use its buffers and textures. It can draw into images
+ * (HostImage); a pass with a HostFramebuffer, which is OpenGL's, throws Error.
  *
  * \throws Error if this build has no Vulkan, if there is no Vulkan driver, or if no physical device, or the host's
  * VkDevice, has the features that are needed, naming each device and what it lacks

@@ -55,9 +55,9 @@ Texture Device::create_texture(const TextureDesc &desc)
            is_buffer ? 1 : int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
   GNOMON_ASSERT(!is_buffer || (!is_depth(desc.format) && desc.format != Format::SRGB8A8),
                 "texture '{}' of texels in a buffer has the format {}", desc.name, to_string(desc.format));
-  if ((desc.format == Format::Host) != (desc.host_name != 0)) {
+  if ((desc.format == Format::Host) != (desc.host.name != 0)) {
     throw Error("texture '{}' of format {}: the name of the host's texture is {}", desc.name, to_string(desc.format),
-                desc.host_name);
+                desc.host.name);
   }
   GNOMON_ASSERT(desc.format != Format::Host || desc.kind == TextureKind::Flat, "texture '{}' of the host", desc.name);
   const std::string detail =

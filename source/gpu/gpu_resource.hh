@@ -35,6 +35,12 @@ inline constexpr std::uint32_t resource_count_max = (1U << resource_index_bits) 
   return id >> resource_index_bits;
 }
 
+/**
+ * A buffer or a texture of the host: its name in OpenGL, or the VkBuffer or VkImage as a number, as in
+ * VkDebugUtilsObjectNameInfoEXT::objectHandle. 0: none.
+ */
+using HostHandle = std::uint64_t;
+
 /** Shared by a device and its resources. It allows a resource to outlive its device. */
 struct DeviceLink {
   /** nullptr after the device was destroyed, or after the packet that creates the resources was lost. */

@@ -62,7 +62,7 @@ TextureDesc texture_desc(std::string name, const HostTexture &texture)
           .width = texture.size_px.x,
           .height = texture.size_px.y,
           .mip_levels = texture.has_mip_levels ? int(std::bit_width(longer)) : 1,
-          .host_name = texture.name};
+          .host = texture};
 }
 
 }  // namespace gnomon::gpu

@@ -45,12 +45,17 @@ enum class Format : std::uint8_t {
 enum class TextureKind : std::uint8_t { Flat, Array, Buffer };
 
 /**
- * A texture that the host created. Requires ContextKind::Host. This is plain data, and the host keeps the ownership.
- * The texture must live until the last submission of a list that looks it up. The host may write it between calls.
+ * A texture that the host created. Requires ContextKind::Host, or a VulkanHost. This is plain data, and the host keeps
+ * the ownership. The texture must live until the last submission of a list that looks it up, and with Vulkan until the
+ * device has executed it. The host may write it between calls; with Vulkan, it makes the writes visible to shaders, and
+ * waits for the draws before it writes.
  */
 struct HostTexture {
-  /** OpenGL name of a texture of the target GL_TEXTURE_2D whose channels are floats or normalised; not 0. */
-  std::uint32_t name = 0;
+  /**
+   * Not 0. OpenGL: a texture of the target GL_TEXTURE_2D. Vulkan: an image of two dimensions with the usage SAMPLED.
+   * Its channels are floats or normalised.
+   */
+  HostHandle name = 0;
   /** Texels of level 0, at least 1x1. */
   glm::ivec2 size_px{0};
   /**
@@ -58,6 +63,9 @@ struct HostTexture {
    * or the last one of immutable storage. false: only level 0 is looked up.
    */
   bool has_mip_levels = false;
+  /** Vulkan only: VkFormat, of colours, and the VkImageLayout during draws, READ_ONLY or GENERAL. */
+  int format = 0;
+  int layout = 0;
 
   bool operator==(const HostTexture &) const = default;
 };
@@ -74,8 +82,8 @@ struct TextureDesc {
   int layers = 1;
   /** Number of mip levels, level 0 included; at least 1. */
   int mip_levels = 1;
-  /** Format::Host: OpenGL name of the texture of the host, which is used instead of a new one. Otherwise 0. */
-  std::uint32_t host_name = 0;
+  /** Format::Host: the texture of the host, which is used instead of a new one. Otherwise its name is 0. */
+  HostTexture host{};
 
   /** Bytes of all levels and layers; 0 for a texture of the host. */
   [[nodiscard]] std::size_t size_bytes() const;

@@ -2,11 +2,10 @@
 // Draws from textures and vertex buffers of the host.
 #include "gpu/gpu_gl_state_table.hh"
 #include "gpu/gpu_host_framebuffer.hh"
+#include "gpu/gpu_host_vertices.hh"
 #include "gpu/gpu_testing.hh"
 
 #include "gpu_device.hh"
-
-#include <glm/gtc/packing.hpp>
 
 #include <functional>
 
@@ -17,6 +16,7 @@ using test::append_draw;
 using test::error_of;
 using test::expect_contains;
 using test::make_shader;
+using test::Vertices;
 
 constexpr int edge_px = 16;
 
@@ -63,33 +63,6 @@ class HostTexels {
   GLuint name = 0;
 };
 
-/** Writes all streams of a vertex to the picture, one after the other from left to right. */
-constexpr const char *streams_vert = R"(
-layout(location = ATTRIBUTE_POSITION) in vec3 position;
-layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
-layout(location = ATTRIBUTE_UV) in vec2 uv;
-layout(location = ATTRIBUTE_SECOND_UV) in vec2 second_uv;
-layout(location = ATTRIBUTE_TANGENT) in vec4 tangent;
-layout(location = ATTRIBUTE_COLOR) in vec4 color;
-layout(location = ATTRIBUTE_DRAW_INSTANCE) in uvec2 draw_instance;
-layout(location = 0) flat out mat4 values;
-layout(location = 4) flat out vec4 more;
-void main()
-{
-  gl_Position = vec4(position, 1.0);
-  values = mat4(vec4(normal, float(draw_instance.y)), vec4(uv, second_uv), tangent, color);
-  more = vec4(position.z);
-})";
-constexpr const char *streams_frag = R"(
-layout(location = 0) flat in mat4 values;
-layout(location = 4) flat in vec4 more;
-layout(location = 0) out vec4 result;
-void main()
-{
-  const int column = int(gl_FragCoord.x) % 5;
-  result = column < 4 ? values[column] : more;
-})";
-
 class HostResourcesTest : public test::HostFramebufferTest {
  protected:
   void SetUp() override
@@ -101,7 +74,7 @@ class HostResourcesTest : public test::HostFramebufferTest {
     picture =
         device->create_texture({.name = "picture", .format = Format::RGBA32F, .width = edge_px, .height = edge_px});
     framebuffer = device->create_framebuffer({"picture", {{&picture}}, {}});
-    shader = make_shader(*device, "streams", streams_vert, streams_frag);
+    shader = make_shader(*device, "streams", test::streams_vert, test::streams_frag);
   }
   std::vector<glm::vec4> drawn(const std::function<void(CommandList &)> &draw)
   {
@@ -128,82 +101,17 @@ class HostResourcesTest : public test::HostFramebufferTest {
 INSTANTIATE_TEST_SUITE_P(, HostResourcesTest, testing::Values(test::HostKind::Egl, test::HostKind::Glx),
                          test::name_of_host);
 
-/** Three vertices that cover the target; the last one of a triangle gives the values of flat inputs. */
-struct Vertices {
-  std::vector<glm::vec3> positions{{-1, -1, 0.25F}, {3, -1, 0.25F}, {-1, 3, 0.25F}};
-  std::vector<glm::vec3> normals{3, glm::vec3(0.25F, -0.5F, 1.0F)};
-  std::vector<glm::vec2> uvs{3, glm::vec2(2.0F, -3.0F)};
-  std::vector<glm::vec2> second_uvs{3, glm::vec2(0.5F, 0.125F)};
-  std::vector<glm::vec4> tangents{3, glm::vec4(1.0F, 0.0F, 0.0F, -1.0F)};
-  std::vector<glm::vec4> colors{3, glm::vec4(0.0F, 1.0F, 0.0F, 1.0F)};
-  std::vector<std::uint32_t> indices{0, 1, 2};
-};
-
 TEST_P(HostResourcesTest, InterleavedBuffersOfAnyTypeDrawWhatABatchDraws)
 {
   const Vertices vertices;
-  std::vector<glm::i16vec4> tangents;
-  std::vector<glm::u16vec4> colors;
-  for (std::size_t i = 0; i < 3; i++) {
-    tangents.push_back(glm::packSnorm<glm::int16>(vertices.tangents[i]));
-    colors.push_back(glm::packUnorm<glm::uint16>(vertices.colors[i]));
-  }
-  const Batch copy = device->create_batch({.name = "copy",
-                                           .positions = vertices.positions,
-                                           .normals = vertices.normals,
-                                           .indices = vertices.indices,
-                                           .uvs = vertices.uvs,
-                                           .second_uvs = vertices.second_uvs,
-                                           .tangents = tangents,
-                                           .colors = colors});
+  const Batch copy = vertices.make_batch(*device);
   const std::vector<glm::vec4> truth = drawn([&](CommandList &list) { append_draw(list, copy); });
   EXPECT_EQ(truth[1], glm::vec4(2.0F, -3.0F, 0.5F, 0.125F));
 
-  // One unused word before the first vertex, as a host has that draws several meshes from a buffer.
-  struct Vertex {
-    glm::vec3 position;
-    glm::uint64 normal;
-    std::uint32_t uv;
-    glm::vec2 second_uv;
-    std::uint32_t tangent;
-    std::uint32_t color;
-    std::uint32_t unused;
-  };
-  std::vector<std::byte> bytes(8);
-  std::vector<std::uint16_t> indices = {7, 7};
-  std::uint32_t stride = 0;
-  const auto append = [&](const auto &value) {
-    const auto value_bytes = std::as_bytes(std::span(&value, 1));
-    bytes.insert(bytes.end(), value_bytes.begin(), value_bytes.end());
-  };
-  for (std::size_t i = 0; i < 3; i++) {
-    const std::size_t first = bytes.size();
-    append(vertices.positions[i]);
-    append(glm::packHalf4x16(glm::vec4(vertices.normals[i], 0)));
-    append(glm::packHalf2x16(vertices.uvs[i]));
-    append(vertices.second_uvs[i]);
-    append(glm::packSnorm4x8(vertices.tangents[i]));
-    append(glm::packUnorm4x8(vertices.colors[i]));
-    append(std::uint32_t(0xdeadbeef));
-    stride = std::uint32_t(bytes.size() - first);
-    indices.push_back(std::uint16_t(i));
-  }
-  const HostBuffer vertex_buffer(bytes);
-  const HostBuffer index_buffer(indices);
-  const auto at = [&](std::uint32_t offset, VertexType type) {
-    return HostStream{vertex_buffer.name, 8 + offset, stride, type};
-  };
-  const HostBatch host{.positions = at(0, VertexType::Float),
-                       .normals = at(12, VertexType::Half),
-                       .uvs = at(20, VertexType::Half),
-                       .second_uvs = at(24, VertexType::Float),
-                       .tangents = at(32, VertexType::Snorm8),
-                       .colors = at(36, VertexType::Unorm8),
-                       .vertex_count = 3,
-                       .index_buffer = index_buffer.name,
-                       .index_offset_bytes = 4,
-                       .index_count = 3,
-                       .index_type = HostBatch::IndexType::Uint16};
+  const test::InterleavedVertices interleaved(vertices);
+  const HostBuffer vertex_buffer(interleaved.bytes);
+  const HostBuffer index_buffer(interleaved.indices);
+  const HostBatch host = interleaved.batch(vertex_buffer.name, index_buffer.name);
   const std::uint64_t uploads = device->counters().upload_bytes;
   Batch batch = device->create_batch("triangle", host);
   EXPECT_EQ(device->counters().upload_bytes, uploads);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_resource.hh"
 #include "gpu_vulkan_host.hh"
 #include "vulkan/vulkan_functions.hh"
 
@@ -112,8 +113,8 @@ class VulkanTestHost {
     info.extent = {width, height, 1};
     info.mipLevels = info.arrayLayers = 1;
     info.samples = samples;
-    info.usage =
-        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     Image image{.width = width, .height = height};
     check(of_device<PFN_vkCreateImage>("vkCreateImage")(device, &info, nullptr, &image.image), "image");
     VkMemoryRequirements needed{};
@@ -192,36 +193,63 @@ class VulkanTestHost {
         },
         {}, signal);
   }
+  struct Buffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    /** The content, which needs no flush. */
+    void *mapped = nullptr;
+
+    [[nodiscard]] gpu::HostHandle handle() const
+    {
+      return (gpu::HostHandle)buffer;
+    }
+  };
+  Buffer make_buffer(std::size_t size_bytes, VkBufferUsageFlags usage)
+  {
+    VkBufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    info.size = size_bytes;
+    info.usage = usage;
+    Buffer buffer;
+    check(of_device<PFN_vkCreateBuffer>("vkCreateBuffer")(device, &info, nullptr, &buffer.buffer), "buffer");
+    VkMemoryRequirements needed{};
+    of_device<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, buffer.buffer, &needed);
+    buffer.memory = allocate(needed, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    check(of_device<PFN_vkBindBufferMemory>("vkBindBufferMemory")(device, buffer.buffer, buffer.memory, 0), "buffer");
+    check(of_device<PFN_vkMapMemory>("vkMapMemory")(device, buffer.memory, 0, size_bytes, 0, &buffer.mapped), "map");
+    return buffer;
+  }
+  /** Of vertices or indices. */
+  template <typename T>
+  Buffer make_buffer(const std::vector<T> &values)
+  {
+    const std::size_t size_bytes = values.size() * sizeof(T);
+    const Buffer buffer = make_buffer(size_bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    std::memcpy(buffer.mapped, values.data(), size_bytes);
+    return buffer;
+  }
+  void destroy(const Buffer &buffer)
+  {
+    of_device<PFN_vkDestroyBuffer>("vkDestroyBuffer")(device, buffer.buffer, nullptr);
+    of_device<PFN_vkFreeMemory>("vkFreeMemory")(device, buffer.memory, nullptr);
+  }
   /** The texels of an image of four bytes a texel in the layout TRANSFER_SRC_OPTIMAL, first row first. */
   std::vector<std::array<std::uint8_t, 4>> read(const Image &image, gpu::HostSemaphore wait = {})
   {
-    const VkDeviceSize size = VkDeviceSize(image.width) * image.height * 4;
-    VkBufferCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = size;
-    info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    VkBuffer buffer = VK_NULL_HANDLE;
-    check(of_device<PFN_vkCreateBuffer>("vkCreateBuffer")(device, &info, nullptr, &buffer), "buffer");
-    VkMemoryRequirements needed{};
-    of_device<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, buffer, &needed);
-    VkDeviceMemory memory =
-        allocate(needed, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    check(of_device<PFN_vkBindBufferMemory>("vkBindBufferMemory")(device, buffer, memory, 0), "buffer");
+    const std::size_t size = std::size_t(image.width) * image.height * 4;
+    const Buffer buffer = make_buffer(size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     submit(
         [&](VkCommandBuffer commands) {
           VkBufferImageCopy region{};
           region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
           region.imageExtent = {image.width, image.height, 1};
           of_device<PFN_vkCmdCopyImageToBuffer>("vkCmdCopyImageToBuffer")(
-              commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &region);
+              commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.buffer, 1, &region);
         },
         wait);
     std::vector<std::array<std::uint8_t, 4>> texels(std::size_t(image.width) * image.height);
-    void *mapped = nullptr;
-    check(of_device<PFN_vkMapMemory>("vkMapMemory")(device, memory, 0, size, 0, &mapped), "map");
-    std::memcpy(texels.data(), mapped, size);
-    of_device<PFN_vkDestroyBuffer>("vkDestroyBuffer")(device, buffer, nullptr);
-    of_device<PFN_vkFreeMemory>("vkFreeMemory")(device, memory, nullptr);
+    std::memcpy(texels.data(), buffer.mapped, size);
+    destroy(buffer);
     return texels;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A device on the VkDevice of a host, and draws into the host's images. The host uses the validation layers with checks
 // of synchronisation and of threads, and their messages are failures. These need no GNOMON_TEST_BACKEND.
+#include "gpu/gpu_host_vertices.hh"
 #include "gpu/gpu_testing.hh"
 #include "gpu/gpu_vulkan_host.hh"
 #include "gpu_create_device.hh"
@@ -8,6 +9,7 @@
 #include "vulkan/vulkan_device.hh"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <thread>
 
@@ -363,6 +365,164 @@ TEST_F(VulkanHostGpu, TheBackendIsTheHosts)
   expect_contains(create(Backend::Auto)->description(), "Vulkan");
   expect_contains(create(Backend::Vulkan)->description(), "Vulkan");
   expect_contains(error_of([&] { create(Backend::OpenGl); }), "backend 'gl': the host's is 'vulkan'");
+}
+
+TEST_F(VulkanHostGpu, AnImageHasNoDepth)
+{
+  const auto device = make_device();
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const Framebuffer framebuffer =
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+  device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+  for (const State state : {State::DepthNearerEqual, State::DepthLessEqual, State::WriteDepth}) {
+    CommandList list;
+    list.begin_pass("deep", framebuffer, {});
+    list.set_state(State::WriteColor | state);
+    list.end_pass();
+    expect_contains(error_of([&] { device->submit(list); }), "framebuffer 'theirs' of the host's image has no depth");
+  }
+  device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  host->destroy(image);
+}
+
+/** What draws of a list write to a picture of floats. */
+class FloatPicture {
+ public:
+  explicit FloatPicture(Device &device) : device_(device) {}
+
+  [[nodiscard]] std::vector<glm::vec4> drawn(const Shader &shader, const std::function<void(CommandList &)> &draw) const
+  {
+    CommandList list;
+    list.begin_pass("picture", framebuffer_, {.clear_color = glm::vec4(-1)});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    draw(list);
+    list.end_pass();
+    device_.submit(list);
+    return read_as<glm::vec4>(device_, picture_);
+  }
+
+ private:
+  Device &device_;
+  Texture picture_ = device_.create_texture({.name = "picture", .format = Format::RGBA32F, .width = 10, .height = 2});
+  Framebuffer framebuffer_ = device_.create_framebuffer({"picture", {{&picture_}}, {}});
+};
+
+TEST_F(VulkanHostGpu, BuffersOfTheHostDrawWhatABatchDraws)
+{
+  const test::Vertices vertices;
+  const test::InterleavedVertices interleaved(vertices);
+  const VulkanTestHost::Buffer vertex_buffer = host->make_buffer(interleaved.bytes);
+  const VulkanTestHost::Buffer index_buffer = host->make_buffer(interleaved.indices);
+  {
+    const auto device = make_device();
+    const FloatPicture picture(*device);
+    const Shader shader = test::make_shader(*device, "streams", test::streams_vert, test::streams_frag);
+    const HostBatch of_host = interleaved.batch(vertex_buffer.handle(), index_buffer.handle());
+    const Batch batch = device->create_batch("theirs", of_host);
+    HostBatch positions = of_host;
+    for (HostStream *stream :
+         {&positions.normals, &positions.uvs, &positions.second_uvs, &positions.tangents, &positions.colors}) {
+      *stream = {};
+    }
+    const Batch positions_only = device->create_batch("theirs, positions", positions);
+    const auto draw_host = [](const Batch &of) {
+      return [&](CommandList &list) {
+        list.bind_host_batch(of.id());
+        test::append_draw(list, of);
+      };
+    };
+    // Before there is a batch in the shared buffers.
+    const std::vector<glm::vec4> drawn = picture.drawn(shader, draw_host(batch));
+    const Batch copy = vertices.make_batch(*device);
+    const auto draw_copy = [&](CommandList &list) {
+      list.bind_host_batch(0);
+      test::append_draw(list, copy);
+    };
+    EXPECT_EQ(drawn, picture.drawn(shader, draw_copy));
+    EXPECT_EQ(drawn[1], glm::vec4(2.0F, -3.0F, 0.5F, 0.125F));
+    // Both kinds in one list, in both orders.
+    const std::vector<glm::vec4> absent = picture.drawn(shader, [&](CommandList &list) {
+      draw_copy(list);
+      draw_host(positions_only)(list);
+    });
+    EXPECT_EQ(absent[0], glm::vec4(0));
+    EXPECT_EQ(absent[1], glm::vec4(0));
+    EXPECT_EQ(absent[2], glm::vec4(0));
+    EXPECT_EQ(absent[3], glm::vec4(1));
+    EXPECT_EQ(absent[4], glm::vec4(0.25F));
+    EXPECT_EQ(drawn, picture.drawn(shader, [&](CommandList &list) {
+      draw_host(positions_only)(list);
+      draw_copy(list);
+    }));
+    // The host writes its buffer between lists.
+    const glm::vec2 written(7, 8);
+    for (std::size_t i = 0; i < 3; i++) {
+      const std::size_t offset = of_host.second_uvs.offset_bytes + i * of_host.second_uvs.stride_bytes;
+      std::memcpy(static_cast<std::byte *>(vertex_buffer.mapped) + offset, &written, sizeof(written));
+    }
+    EXPECT_EQ(picture.drawn(shader, draw_host(batch))[1], glm::vec4(2.0F, -3.0F, 7.0F, 8.0F));
+
+    HostBatch wrong = of_host;
+    wrong.normals.offset_bytes += 1;
+    expect_contains(error_of([&] { static_cast<void>(device->create_batch("wrong", wrong)); }),
+                    "batch 'wrong': the normals of the host begin at byte 21");
+  }
+  host->destroy(vertex_buffer);
+  host->destroy(index_buffer);
+}
+
+TEST_F(VulkanHostGpu, TexturesOfTheHostAreLookedUp)
+{
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_B8G8R8A8_UNORM, 2, 2);
+  const auto fill = [&](const std::array<float, 4> &color, VkImageLayout layout) {
+    host->clear(image, color);
+    host->submit([&](VkCommandBuffer commands) {
+      host->change_layout(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout);
+    });
+  };
+  {
+    const auto device = make_device();
+    const FloatPicture picture(*device);
+    const Batch full = test::full_triangle(*device, 0.5F);
+    const Sampler sampler = device->create_sampler({.name = "linear", .filter = Filter::Linear});
+    const Shader shader = test::make_shader(*device, "look up", test::CLIP_SPACE_VERT, R"(
+layout(binding = RADIANCE_SLOT) uniform sampler2D theirs;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = texture(theirs, vec2(0.5));
+})");
+    const HostTexture theirs{.name = (HostHandle)image.image,
+                             .size_px = {2, 2},
+                             .format = VK_FORMAT_B8G8R8A8_UNORM,
+                             .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    const Texture texture = device->create_texture(texture_desc("theirs", theirs));
+    HostTexture general = theirs;
+    general.layout = VK_IMAGE_LAYOUT_GENERAL;
+    const Texture texture_general = device->create_texture(texture_desc("theirs, general", general));
+    const auto looked_up = [&](const Texture &of) {
+      return picture.drawn(shader, [&](CommandList &list) {
+        list.bind_texture(shader.interface().find(BindingKind::Texture, "theirs")->slot, of.id(), sampler.id());
+        test::append_draw(list, full);
+      })[0];
+    };
+    fill({0.2F, 0.4F, 0.6F, 0.8F}, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    EXPECT_EQ(glm::round(255.0F * looked_up(texture)), glm::vec4(51, 102, 153, 204));
+    // What the host writes between lists, in either layout.
+    fill({1, 0, 0, 1}, VK_IMAGE_LAYOUT_GENERAL);
+    EXPECT_EQ(looked_up(texture_general), glm::vec4(1, 0, 0, 1));
+
+    const auto refused = [&](int format, int layout) {
+      HostTexture wrong = theirs;
+      wrong.format = format;
+      wrong.layout = layout;
+      return error_of([&] { static_cast<void>(device->create_texture(texture_desc("wrong", wrong))); });
+    };
+    expect_contains(refused(VK_FORMAT_R8G8B8A8_UINT, theirs.layout), "texture 'wrong': the device cannot look up");
+    expect_contains(refused(theirs.format, VK_IMAGE_LAYOUT_UNDEFINED), "texture 'wrong': no image");
+  }
+  host->destroy(image);
 }
 
 }  // namespace

@@ -399,7 +399,7 @@ TEST_F(RenderSceneTest, AHostsTextureIsLookedUpWithoutAnUploadUntilItIsTakenBack
   render_scene.update();
   EXPECT_GT(render_scene.passes_revision(), passes);
   const Images::Lookup of_host = render_scene.texture(texture, scene::ImageUse::Color);
-  EXPECT_EQ(of_host.image.desc().host_name, 7U);
+  EXPECT_EQ(of_host.image.desc().host.name, 7U);
   EXPECT_EQ(of_host.image.desc().width, 64);
   const auto mip_of = [&](const gpu::Sampler &sampler) {
     return std::get<gpu::SamplerDesc>(device->find(gpu::ResourceKind::Sampler, sampler.id())->desc).mip;

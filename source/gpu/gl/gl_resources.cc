@@ -79,7 +79,7 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
   const Calls calls(*this);
   if (desc.format == Format::Host) {
     check_host_texture(desc);
-    textures_.insert(id, {desc.host_name, desc, 0});
+    textures_.insert(id, {GLuint(desc.host.name), desc, 0});
     return;
   }
   GLuint texture = 0;
@@ -107,7 +107,7 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
 
 void GlDevice::check_host_texture(const TextureDesc &desc)
 {
-  const GLuint name = desc.host_name;
+  const auto name = GLuint(desc.host.name);
   const auto refuse = [&](std::string_view why) {
     throw Error("texture '{}': texture {} of the host {}", desc.name, name, why);
   };
@@ -330,11 +330,11 @@ void GlDevice::host_batch_create(ResourceId id, const std::string &name, const H
     const HostStream &stream = batch.stream(VertexStream(i));
     if (stream.buffer != 0 && batch.vertex_count > 0) {
       const std::size_t vertex_bytes = std::size_t(vertex_formats()[i].component_count) * gpu::size_bytes(stream.type);
-      check_size(to_string(VertexStream(i)), stream.buffer,
+      check_size(to_string(VertexStream(i)), GLuint(stream.buffer),
                  stream.offset_bytes + std::size_t(batch.vertex_count - 1) * stream.stride_bytes + vertex_bytes);
     }
   }
-  check_size("indices", batch.index_buffer,
+  check_size("indices", GLuint(batch.index_buffer),
              batch.index_offset_bytes + std::size_t(batch.index_count) * batch.index_size_bytes());
   if (host_array_.name == 0) {
     host_array_ = create_instanced_array();

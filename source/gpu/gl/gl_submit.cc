@@ -169,7 +169,7 @@ void GlDevice::bind_host_buffers(const HostBatch &batch)
     if (stream.buffer != 0) {
       const auto [type, is_normalized] = gl_vertex_type(stream.type);
       glVertexArrayAttribFormat(array, format.attribute, format.component_count, type, is_normalized, 0);
-      glVertexArrayVertexBuffer(array, format.attribute, stream.buffer, GLintptr(stream.offset_bytes),
+      glVertexArrayVertexBuffer(array, format.attribute, GLuint(stream.buffer), GLintptr(stream.offset_bytes),
                                 GLsizei(stream.stride_bytes));
     }
     else {
@@ -179,7 +179,7 @@ void GlDevice::bind_host_buffers(const HostBatch &batch)
       glVertexArrayVertexBuffer(array, format.attribute, absent_streams_, is_one ? sizeof(glm::vec4) : 0, 0);
     }
   }
-  glVertexArrayElementBuffer(array, batch.index_buffer);
+  glVertexArrayElementBuffer(array, GLuint(batch.index_buffer));
 }
 
 void GlDevice::bind_vertex_array()

@@ -50,6 +50,11 @@ class VulkanContext {
   /** Version, names of the device and the driver. */
   std::string description;
 
+  /** The instance and the device are the host's. */
+  [[nodiscard]] bool is_host() const
+  {
+    return is_host_;
+  }
   /** Uses the queue. */
   [[nodiscard]] VkResult submit(const VkSubmitInfo2 &info);
   /** Replace the lost surface of the window, which has no swapchain. \throws Error if the queue cannot present to it */
@@ -106,7 +111,6 @@ class VulkanContext {
   GLFWwindow *window_ = nullptr;
   PFN_vkGetInstanceProcAddr loader_ = nullptr;
   VkInstance instance_ = VK_NULL_HANDLE;
-  /** The instance and the device are the host's. */
   bool is_host_ = false;
   std::function<void()> lock_queue_;
   std::function<void()> unlock_queue_;

@@ -111,6 +111,9 @@ void VulkanDevice::create_dummies()
                                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                         MemoryUse::Device);
+  constexpr VkDeviceSize white_bytes = 16;
+  dummies_.white = memory_.make_buffer(
+      what, white_bytes, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Device);
   VkBufferViewCreateInfo view{};
   view.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
   view.buffer = dummies_.buffer.handle;
@@ -118,9 +121,11 @@ void VulkanDevice::create_dummies()
   view.range = VK_WHOLE_SIZE;
   context_->check(context_->vk.vkCreateBufferView(context_->device, &view, nullptr, &dummies_.buffer_view), what);
   barriers_.before_copy(VK_NULL_HANDLE, dummies_.buffer.handle);
+  barriers_.before_copy(VK_NULL_HANDLE, dummies_.white.handle);
   VkCommandBuffer commands = submissions_.commands();
   barriers_.record(commands);
   context_->vk.vkCmdFillBuffer(commands, dummies_.buffer.handle, 0, VK_WHOLE_SIZE, 0);
+  context_->vk.vkCmdFillBuffer(commands, dummies_.white.handle, 0, VK_WHOLE_SIZE, ~std::uint32_t(0));
   const VkImageSubresourceRange color{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
   const VkImageSubresourceRange depth{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
   constexpr VkClearColorValue black{};
@@ -139,6 +144,7 @@ void VulkanDevice::destroy_dummies()
 {
   context_->vk.vkDestroyBufferView(context_->device, dummies_.buffer_view, nullptr);
   memory_.destroy(dummies_.buffer);
+  memory_.destroy(dummies_.white);
   for (const bool is_depth : {false, true}) {
     context_->vk.vkDestroySampler(context_->device, dummies_.samplers[is_depth], nullptr);
     context_->vk.vkDestroyImageView(context_->device, dummies_.flat_views[is_depth], nullptr);

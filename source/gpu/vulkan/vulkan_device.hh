@@ -109,6 +109,8 @@ class VulkanDevice final : public Device {
     std::array<VkSampler, 2> samplers{};
     VulkanBuffer buffer;
     VkBufferView buffer_view = VK_NULL_HANDLE;
+    /** The colour of vertices of a host that have none. */
+    VulkanBuffer white;
   };
   /** A texture that a list has bound to a slot. */
   struct BoundTexture {
@@ -122,6 +124,8 @@ class VulkanDevice final : public Device {
     std::vector<VkDescriptorBufferInfo> storages;
     std::vector<BoundTexture> textures;
     ResourceId objects = 0;
+    /** nullptr: draws are of batches in the shared buffers. */
+    const HostBatch *host_batch = nullptr;
     std::span<const std::byte> push_constants;
     VulkanStream::Place instances;
     VulkanStream::Place draws;
@@ -171,6 +175,9 @@ class VulkanDevice final : public Device {
   void time_mark(ResourceId query, bool is_end) override;
   std::optional<double> seconds_take(ResourceId query) override;
 
+  /** \throws Error if the device does not use that of a host, which has \a whats */
+  void check_host(std::string_view what, std::string_view whats) const;
+  [[nodiscard]] VulkanImage make_host_image(std::string_view what, const TextureDesc &desc);
   [[nodiscard]] VulkanAttachment make_attachment(std::string_view what, const AttachmentLayout &layout);
   void destroy_attachment(const VulkanAttachment &attachment);
   void destroy_framebuffer(const VulkanFramebuffer &framebuffer);
@@ -218,6 +225,7 @@ class VulkanDevice final : public Device {
   IdTable<VkSampler> samplers_{ResourceKind::Sampler};
   IdTable<VulkanFramebuffer> framebuffers_{ResourceKind::Framebuffer};
   IdTable<VulkanBuffer> buffers_{ResourceKind::Buffer};
+  IdTable<HostBatch> host_batches_{ResourceKind::Batch};
   IdTable<std::shared_ptr<VulkanProgram>> programs_{ResourceKind::Shader};
   IdTable<Timer> timers_{ResourceKind::TimerQuery};
 

@@ -2,7 +2,6 @@
 #include "vulkan_pipelines.hh"
 
 #include "draw_object_shared.h"
-#include "gpu_batch.hh"
 #include "gpu_command_list.hh"
 #include "gpu_error.hh"
 #include "slots_shared.h"
@@ -15,22 +14,13 @@ namespace gnomon::gpu {
 
 namespace {
 
-VkFormat vertex_format(const VertexFormat &format)
-{
-  switch (format.type) {
-    case VertexType::Snorm16: return VK_FORMAT_R16G16B16A16_SNORM;
-    case VertexType::Unorm16: return VK_FORMAT_R16G16B16A16_UNORM;
-    default: return format.component_count == 2 ? VK_FORMAT_R32G32_SFLOAT : VK_FORMAT_R32G32B32_SFLOAT;
-  }
-}
-
 /** The vertex inputs of a program: as many bindings as are used. Their strides are dynamic. */
 struct VertexInputs {
   std::vector<VkVertexInputAttributeDescription> attributes;
   std::vector<VkVertexInputBindingDescription> bindings;
 };
 
-VertexInputs vertex_inputs(std::uint32_t locations, bool has_objects)
+VertexInputs vertex_inputs(std::uint32_t locations, bool has_objects, const VertexTypes &types)
 {
   VertexInputs inputs;
   const auto add = [&](std::uint32_t location, std::uint32_t binding, VkFormat format, std::size_t offset_bytes,
@@ -44,8 +34,10 @@ VertexInputs vertex_inputs(std::uint32_t locations, bool has_objects)
       inputs.bindings.push_back({binding, 0, rate});
     }
   };
-  for (const VertexFormat &format : vertex_formats()) {
-    add(format.attribute, format.attribute, vertex_format(format), 0, VK_VERTEX_INPUT_RATE_VERTEX);
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const VertexFormat &format = vertex_formats()[i];
+    add(format.attribute, format.attribute, vertex_format(format.component_count, types[i]), 0,
+        VK_VERTEX_INPUT_RATE_VERTEX);
   }
   // The value of an instance is 0 in calls: the default of a component that is not in the buffer.
   add(ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE, has_objects ? VK_FORMAT_R32_UINT : VK_FORMAT_R32G32_UINT,
@@ -84,6 +76,31 @@ VkPipelineColorBlendAttachmentState blending(State state)
 }
 
 }  // namespace
+
+VertexTypes vertex_types(const HostBatch *host)
+{
+  VertexTypes types{};
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const bool is_host = host && host->stream(VertexStream(i)).buffer != 0;
+    types[i] = is_host ? host->stream(VertexStream(i)).type : vertex_formats()[i].type;
+  }
+  return types;
+}
+
+VkFormat vertex_format(int component_count, VertexType type)
+{
+  // Of two, three and four components.
+  constexpr std::array<std::array<VkFormat, 3>, 6> formats = {{
+      {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT},
+      {VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT},
+      {VK_FORMAT_R8G8_SNORM, VK_FORMAT_R8G8B8_SNORM, VK_FORMAT_R8G8B8A8_SNORM},
+      {VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8_UNORM, VK_FORMAT_R8G8B8A8_UNORM},
+      {VK_FORMAT_R16G16_SNORM, VK_FORMAT_R16G16B16_SNORM, VK_FORMAT_R16G16B16A16_SNORM},
+      {VK_FORMAT_R16G16_UNORM, VK_FORMAT_R16G16B16_UNORM, VK_FORMAT_R16G16B16A16_UNORM},
+  }};
+  static_assert(std::size_t(VertexType::Unorm16) + 1 == formats.size());
+  return formats[std::size_t(type)][std::size_t(component_count - 2)];
+}
 
 std::uint32_t pipeline_state(State state)
 {
@@ -190,7 +207,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   const trace::Span span("make pipeline", name_);
   const auto state = State(key.state);
   const VertexInputs inputs =
-      key.is_procedural ? VertexInputs() : vertex_inputs(interface_.vertex_inputs, key.has_objects);
+      key.is_procedural ? VertexInputs() : vertex_inputs(interface_.vertex_inputs, key.has_objects, key.vertex_types);
   VkPipelineVertexInputStateCreateInfo vertices{};
   vertices.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
   vertices.vertexBindingDescriptionCount = std::uint32_t(inputs.bindings.size());

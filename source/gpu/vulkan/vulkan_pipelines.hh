@@ -3,6 +3,7 @@
 
 #include "vulkan_shaders.hh"
 
+#include "gpu_batch.hh"
 #include "gpu_state.hh"
 
 #include <array>
@@ -12,6 +13,13 @@
 #include <string>
 
 namespace gnomon::gpu {
+
+/** Types of the components of all vertex streams. */
+using VertexTypes = std::array<VertexType, vertex_stream_count>;
+/** Those of batches in the shared buffers, or of \a host. */
+[[nodiscard]] VertexTypes vertex_types(const HostBatch *host = nullptr);
+
+[[nodiscard]] VkFormat vertex_format(int component_count, VertexType type);
 
 /** What a pipeline of a program depends on; the rest is dynamic. */
 struct PipelineKey {
@@ -25,6 +33,7 @@ struct PipelineKey {
   /** Draws take vertices from no buffer, or instances from a buffer of objects. */
   bool is_procedural = false;
   bool has_objects = false;
+  VertexTypes vertex_types{};
 
   auto operator<=>(const PipelineKey &) const = default;
 };

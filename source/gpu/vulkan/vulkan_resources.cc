@@ -56,12 +56,12 @@ void VulkanDevice::texture_create(ResourceId id, const TextureDesc &desc)
 {
   const trace::Span span("create texture", desc.name);
   const std::string what = fmt::format("texture '{}'", desc.name);
-  if (desc.format == Format::Host) {
-    throw Error("{}: a device of Vulkan has no textures of the host", what);
-  }
   VulkanTexture texture;
   texture.desc = desc;
-  if (desc.kind == TextureKind::Buffer) {
+  if (desc.format == Format::Host) {
+    texture.image = make_host_image(what, desc);
+  }
+  else if (desc.kind == TextureKind::Buffer) {
     texture.buffer = memory_.make_buffer(
         what, desc.size_bytes(),
         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -83,6 +83,40 @@ void VulkanDevice::texture_create(ResourceId id, const TextureDesc &desc)
   }
   textures_.insert(id, std::move(texture));
   check_made(ResourceKind::Texture, id, what);
+}
+
+void VulkanDevice::check_host(std::string_view what, std::string_view whats) const
+{
+  if (!context_->is_host()) {
+    throw Error("{}: the host's {} are on another VkDevice than this device, which has one of its own", what, whats);
+  }
+}
+
+VulkanImage VulkanDevice::make_host_image(std::string_view what, const TextureDesc &desc)
+{
+  check_host(what, "images");
+  VulkanImage image;
+  image.handle = VkImage(std::uintptr_t(desc.host.name));
+  image.format = VkFormat(desc.host.format);
+  VkFormatProperties properties{};
+  context_->instance.vkGetPhysicalDeviceFormatProperties(context_->physical_device, image.format, &properties);
+  constexpr VkFormatFeatureFlags needed =
+      VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+  if ((properties.optimalTilingFeatures & needed) != needed) {
+    throw Error("{}: the device cannot look up and filter VkFormat {} of the host's image", what, desc.host.format);
+  }
+  constexpr std::array<VkImageLayout, 3> layouts = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                                    VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL};
+  if (std::ranges::find(layouts, VkImageLayout(desc.host.layout)) == layouts.end()) {
+    throw Error("{}: no image of the host can be looked up in VkImageLayout {}", what, desc.host.layout);
+  }
+  image.size_px = {desc.width, desc.height};
+  image.levels = std::uint32_t(desc.mip_levels);
+  image.view = make_view(*context_, what, image, image.format, VK_IMAGE_VIEW_TYPE_2D,
+                         {VK_IMAGE_ASPECT_COLOR_BIT, 0, image.levels, 0, 1});
+  // It is not destroyed with the view.
+  image.handle = VK_NULL_HANDLE;
+  return image;
 }
 
 VkSampler VulkanDevice::make_sampler(std::string_view what, const VkSamplerCreateInfo &info)
@@ -367,9 +401,29 @@ void VulkanDevice::batch_create(const BatchDesc &desc, const BatchRange &range, 
   check(fmt::format("batch '{}'", desc.name));
 }
 
-void VulkanDevice::host_batch_create(ResourceId /*id*/, const std::string &name, const HostBatch & /*batch*/)
+void VulkanDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
-  throw Error("batch '{}': a device of Vulkan has no buffers of the host", name);
+  const std::string what = fmt::format("batch '{}'", name);
+  check_host(what, "buffers");
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const HostStream &stream = batch.stream(VertexStream(i));
+    if (stream.buffer == 0) {
+      continue;
+    }
+    const std::string_view stream_name = to_string(VertexStream(i));
+    const std::uint32_t component_bytes = gpu::size_bytes(stream.type);
+    if (stream.offset_bytes % component_bytes != 0 || stream.stride_bytes % component_bytes != 0) {
+      throw Error("{}: the {} of the host begin at byte {} with a stride of {} bytes, no multiples of {}", what,
+                  stream_name, stream.offset_bytes, stream.stride_bytes, component_bytes);
+    }
+    const VkFormat format = vertex_format(vertex_formats()[i].component_count, stream.type);
+    VkFormatProperties properties{};
+    context_->instance.vkGetPhysicalDeviceFormatProperties(context_->physical_device, format, &properties);
+    if ((properties.bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) == 0) {
+      throw Error("{}: the device reads no {} of VkFormat {} from buffers", what, stream_name, int(format));
+    }
+  }
+  host_batches_.insert(id, batch);
 }
 
 void VulkanDevice::shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled)
@@ -431,7 +485,7 @@ void VulkanDevice::resource_destroy(ResourceKind kind, ResourceId id)
       });
       timers_.erase(id);
       break;
-    case ResourceKind::Batch: break;
+    case ResourceKind::Batch: host_batches_.erase(id); break;
   }
 }
 

@@ -172,9 +172,8 @@ void VulkanDevice::execute(const CommandList &list)
         list_.has_new_vertices = true;
         break;
       case CommandKind::BindHostBatch:
-        if (command.id != 0) {
-          throw Error("batch id {}: a device of Vulkan has no batches of the host", command.id);
-        }
+        list_.host_batch = command.id == 0 ? nullptr : &host_batches_.at(command.id);
+        list_.has_new_vertices = true;
         break;
       case CommandKind::PushConstants:
         list_.push_constants = bytes_of(command);
@@ -231,7 +230,8 @@ void VulkanDevice::prepare_lookups(const VulkanFramebuffer &framebuffer, const P
     }
   }
   for (const ResourceId id : used) {
-    if (std::ranges::find(list_.copied, id) == list_.copied.end()) {
+    // The host's have the layout that it says.
+    if (textures_.at(id).desc.format != Format::Host && std::ranges::find(list_.copied, id) == list_.copied.end()) {
       barriers_.before_use(textures_.at(id).image, use::sampled);
     }
   }
@@ -336,6 +336,12 @@ void VulkanDevice::set_state(State state)
   list_.pipeline.state = pipeline_state(state);
   const VkCompareOp compare = vulkan_compare(state);
   const bool is_written = has(state, State::WriteDepth);
+  if (list_.pass && (is_written || compare != VK_COMPARE_OP_ALWAYS)) {
+    const VulkanFramebuffer &framebuffer = framebuffers_.at(list_.pass->framebuffer);
+    if (framebuffer.host) {
+      throw Error("framebuffer '{}' of the host's image has no depth, which draws test or write", framebuffer.name);
+    }
+  }
   // As in OpenGL, depth is written only if it is tested.
   context_->vk.vkCmdSetDepthTestEnable(commands, compare != VK_COMPARE_OP_ALWAYS || is_written ? VK_TRUE : VK_FALSE);
   context_->vk.vkCmdSetDepthWriteEnable(commands, is_written ? VK_TRUE : VK_FALSE);
@@ -350,12 +356,13 @@ void VulkanDevice::set_state(State state)
 
 bool VulkanDevice::prepare_draw(bool is_procedural)
 {
-  if (!list_.program || (!is_procedural && pools_[index_pool].handle == VK_NULL_HANDLE)) {
+  if (!list_.program || (!is_procedural && !list_.host_batch && pools_[index_pool].handle == VK_NULL_HANDLE)) {
     return false;
   }
   VkCommandBuffer commands = submissions_.commands();
   list_.pipeline.is_procedural = is_procedural;
   list_.pipeline.has_objects = !is_procedural && list_.objects != 0;
+  list_.pipeline.vertex_types = vertex_types(is_procedural ? nullptr : list_.host_batch);
   const VkPipeline pipeline = list_.program->pipeline(list_.pipeline);
   if (std::exchange(list_.bound_pipeline, pipeline) != pipeline) {
     context_->vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
@@ -384,7 +391,8 @@ VkDescriptorImageInfo VulkanDevice::image_info(const VulkanBinding &binding)
   }
   const VulkanTexture &texture = textures_.at(bound.texture);
   const bool is_copied = std::ranges::find(list_.copied, bound.texture) != list_.copied.end();
-  return {samplers_.at(bound.sampler), is_copied ? texture.copy->view : texture.image.view, layout};
+  return {samplers_.at(bound.sampler), is_copied ? texture.copy->view : texture.image.view,
+          texture.desc.format == Format::Host ? VkImageLayout(texture.desc.host.layout) : layout};
 }
 
 void VulkanDevice::bind_descriptors()
@@ -443,11 +451,21 @@ void VulkanDevice::bind_vertices()
   const std::uint32_t inputs = list_.program->interface().vertex_inputs;
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
     const VertexFormat &format = vertex_formats()[i];
-    if ((inputs >> format.attribute & 1U) != 0) {
+    if ((inputs >> format.attribute & 1U) == 0) {
+      continue;
+    }
+    if (!list_.host_batch) {
       // No batch has a stream that has no pool: the vertices read zeros.
       const bool is_absent = pools_[i].handle == VK_NULL_HANDLE;
       bind(format.attribute, is_absent ? dummies_.buffer.handle : pools_[i].handle, 0,
            is_absent ? 0 : format.size_bytes);
+    }
+    else if (const HostStream &stream = list_.host_batch->stream(VertexStream(i)); stream.buffer != 0) {
+      bind(format.attribute, VkBuffer(std::uintptr_t(stream.buffer)), stream.offset_bytes, stream.stride_bytes);
+    }
+    else {
+      const bool is_white = VertexStream(i) == VertexStream::Color;
+      bind(format.attribute, is_white ? dummies_.white.handle : dummies_.buffer.handle, 0, 0);
     }
   }
   const VkBuffer objects = list_.objects == 0 ? dummies_.buffer.handle : buffers_.at(list_.objects).handle;
@@ -455,7 +473,14 @@ void VulkanDevice::bind_vertices()
   bind(ATTRIBUTE_DRAW_INSTANCE, is_list ? list_.instances.buffer : objects, is_list ? list_.instances.offset_bytes : 0,
        is_list ? sizeof(DrawInstance) : sizeof(shared::ObjectData));
   bind(ATTRIBUTE_WORLD_FROM_OBJECT, objects, 0, is_list ? 0 : sizeof(shared::ObjectData));
-  context_->vk.vkCmdBindIndexBuffer(commands, pools_[index_pool].handle, 0, VK_INDEX_TYPE_UINT32);
+  if (list_.host_batch) {
+    const bool is_short = list_.host_batch->index_type == HostBatch::IndexType::Uint16;
+    context_->vk.vkCmdBindIndexBuffer(commands, VkBuffer(std::uintptr_t(list_.host_batch->index_buffer)), 0,
+                                      is_short ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
+  }
+  else {
+    context_->vk.vkCmdBindIndexBuffer(commands, pools_[index_pool].handle, 0, VK_INDEX_TYPE_UINT32);
+  }
 }
 
 }  // namespace gnomon::gpu
