@@ -380,6 +380,51 @@ void add_removal(EditedScene &edited, const std::string &name, scene::Handle<Thi
                           false});
 }
 
+/** Adds additions of each kind of thing, and of objects of \a mesh. */
+inline void add_additions(EditedScene &edited, scene::Handle<scene::Mesh> mesh)
+{
+  add_addition(edited, "an object", [mesh](scene::Scene &to) {
+    return to.add(
+        scene::Node{.parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {0.4, -1, 0.4}), glm::dvec3(0.2)),
+                    .meshes = {mesh}});
+  });
+  add_addition(edited, "an object that casts no shadow", [mesh](scene::Scene &to) {
+    return to.add(
+        scene::Node{.parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {0.4, -1, 0.4}), glm::dvec3(0.2)),
+                    .meshes = {mesh},
+                    .casts_shadow = false,
+                    .receives_shadow = false});
+  });
+  add_addition(edited, "an object of a mesh that is removed", [mesh](scene::Scene &to) {
+    const auto made = to.add(scene::Mesh(to.meshes()[mesh]));
+    const auto at = to.add(scene::Node{.meshes = {made}});
+    to.remove(made);
+    return at;
+  });
+  for (const auto &[kind, text] : {std::pair(scene::LampKind::Point, "a point"),
+                                   {scene::LampKind::Sun, "a sun"},
+                                   {scene::LampKind::Spot, "a spot"},
+                                   {scene::LampKind::Hemi, "a hemi lamp"},
+                                   {scene::LampKind::Area, "an area lamp"}}) {
+    add_addition(edited, text, [kind = kind](scene::Scene &to) {
+      keep_near_plane(to, add_lamp_of(to, kind, {1, 1.5F, 2.5F}));
+      return to.placed_lamps().back().node;
+    });
+  }
+  add_addition(edited, "a mesh", [mesh](scene::Scene &to) { return to.add(scene::Mesh(to.meshes()[mesh])); });
+  add_addition(edited, "a material", [](scene::Scene &to) { return to.add(scene::Material{}); });
+  add_addition(edited, "an image", [](scene::Scene &to) {
+    return to.add(scene::Image{"more", 2, 2, some_texels(2, 9)});
+  });
+  add_addition(edited, "a texture", [](scene::Scene &to) { return to.add(scene::Texture{}); });
+  add_addition(edited, "a lamp without a node", [](scene::Scene &to) { return to.add(scene::Lamp{}); });
+  add_addition(edited, "a camera", [](scene::Scene &to) { return to.add(scene::Camera{}); });
+  add_addition(edited, "a function", [](scene::Scene &to) {
+    return to.add(
+        scene::SurfaceFunction{"more", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n}\n"});
+  });
+}
+
 /** A scene of each kind of thing, which are added, removed, moved to other nodes and replaced. */
 inline EditedScene structure_scene(const std::string &name)
 {
@@ -411,47 +456,7 @@ inline EditedScene structure_scene(const std::string &name)
   const auto camera = scene.add(scene::Camera{.name = "camera"});
   const auto camera_node = scene.add(scene::Node{.name = "camera", .camera = camera});
 
-  add_addition(edited, "an object", [mesh](scene::Scene &to) {
-    return to.add(
-        scene::Node{.parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {0.4, -1, 0.4}), glm::dvec3(0.2)),
-                    .meshes = {mesh}});
-  });
-  add_addition(edited, "an object that casts no shadow", [mesh](scene::Scene &to) {
-    return to.add(
-        scene::Node{.parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {0.4, -1, 0.4}), glm::dvec3(0.2)),
-                    .meshes = {mesh},
-                    .casts_shadow = false,
-                    .receives_shadow = false});
-  });
-  add_addition(edited, "an object of a mesh that is removed", [ground](scene::Scene &to) {
-    const auto made = to.add(scene::Mesh(to.meshes()[ground.box_mesh]));
-    const auto at = to.add(scene::Node{.meshes = {made}});
-    to.remove(made);
-    return at;
-  });
-  for (const auto &[kind, text] : {std::pair(scene::LampKind::Point, "a point"),
-                                   {scene::LampKind::Sun, "a sun"},
-                                   {scene::LampKind::Spot, "a spot"},
-                                   {scene::LampKind::Hemi, "a hemi lamp"},
-                                   {scene::LampKind::Area, "an area lamp"}}) {
-    add_addition(edited, text, [kind = kind](scene::Scene &to) {
-      keep_near_plane(to, add_lamp_of(to, kind, {1, 1.5F, 2.5F}));
-      return to.placed_lamps().back().node;
-    });
-  }
-  add_addition(edited, "a mesh",
-               [ground](scene::Scene &to) { return to.add(scene::Mesh(to.meshes()[ground.box_mesh])); });
-  add_addition(edited, "a material", [](scene::Scene &to) { return to.add(scene::Material{}); });
-  add_addition(edited, "an image", [](scene::Scene &to) {
-    return to.add(scene::Image{"more", 2, 2, some_texels(2, 9)});
-  });
-  add_addition(edited, "a texture", [](scene::Scene &to) { return to.add(scene::Texture{}); });
-  add_addition(edited, "a lamp without a node", [](scene::Scene &to) { return to.add(scene::Lamp{}); });
-  add_addition(edited, "a camera", [](scene::Scene &to) { return to.add(scene::Camera{}); });
-  add_addition(edited, "a function", [](scene::Scene &to) {
-    return to.add(
-        scene::SurfaceFunction{"more", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n}\n"});
-  });
+  add_additions(edited, ground.box_mesh);
 
   edited.edits.push_back({"re-parent the object's group to the ground",
                           [=](scene::Scene &to) { to.set_parent(group, ground.ground); },
@@ -574,6 +579,34 @@ inline EditedScene world_scene(bool has_picture, const std::string &name)
   other.picture = picture_of(0.1F);
   add("another picture", other);
   add("no world", std::nullopt);
+  return edited;
+}
+
+/**
+ * \a scene with additions, and edits of all properties of its lamps, cameras, textures and nodes, of one material, and
+ * of the nodes' places.
+ */
+inline EditedScene edited_scene_of(const scene::Scene &scene)
+{
+  EditedScene edited{"scene", scene, {}};
+  add_additions(edited, scene.objects().front().mesh);
+  for (const auto &[lamp, one] : scene.lamps()) {
+    add_property_edits(edited, lamp, one.name);
+    add_property_edits(edited, lamp, one.name,
+                       [](scene::Lamp &lamp_of) -> scene::LampShadow & { return lamp_of.shadow; });
+  }
+  for (const auto &[camera, one] : scene.cameras()) {
+    add_property_edits(edited, camera, one.name);
+  }
+  for (const auto &[texture, one] : scene.textures()) {
+    add_property_edits(edited, texture, "texture");
+  }
+  for (const auto &[node, one] : scene.nodes()) {
+    add_property_edits(edited, node, one.name);
+    add_edit(edited, node, one.name + " moves", [](scene::Node &moved) { moved.parent_from_node[3].x += 0.5; });
+  }
+  const scene::Handle<scene::Material> material = scene.meshes()[scene.objects().front().mesh].material;
+  add_property_edits(edited, material, "material");
   return edited;
 }
 

@@ -92,6 +92,43 @@ TEST(GltfPointer, WhatIsNotPlayedIsNamed)
                   "pointer: '/cameras/0/orthographic/znear' is not played");
 }
 
+TEST(GltfPointer, TheFirstValueOutOfRangeIsNamedOnce)
+{
+  const auto warnings_of = [](const std::string &pointer, const std::vector<float> &values, const std::string &type,
+                              const std::string &interpolation = "LINEAR") {
+    GltfBuilder builder = triangle_scene();
+    builder.document["materials"] = {{{"name", "paint"}}};
+    builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+    builder.document["cameras"] = {
+        {{"type", "perspective"}, {"name", "lens"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+    builder.document["nodes"][0]["camera"] = 0;
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    builder.document["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    // A second node with the same lamp.
+    builder.document["nodes"].push_back(builder.document["nodes"][0]);
+    builder.document["scenes"][0]["nodes"].push_back(1);
+    add_channel(builder, pointer_to(pointer), {0, 1, 2}, values, type, interpolation);
+    return import(builder).warnings;
+  };
+  using Messages = std::vector<std::string>;
+  const std::string roughness = "/materials/0/pbrMetallicRoughness/roughnessFactor";
+  EXPECT_EQ(warnings_of(roughness, {0, 1.5F, 2}, "SCALAR"),
+            Messages{"animation 0: the 'pbrMetallicRoughness/roughnessFactor' of 'paint' is 1.5 at 1 s, clamped to 1"});
+  EXPECT_EQ(warnings_of(roughness, {0, 1, 0.5F}, "SCALAR"), Messages{});
+  // Tangents may be any numbers.
+  EXPECT_EQ(warnings_of(roughness, {9, 0, -9, 9, 1, -9, 9, 0.5F, -9}, "SCALAR", "CUBICSPLINE"), Messages{});
+  EXPECT_EQ(
+      warnings_of("/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1, 1, 1, 1, 1, 1, -0.5F, 1, 1, 1, 1},
+                  "VEC4"),
+      Messages{"animation 0: the 'pbrMetallicRoughness/baseColorFactor' of 'paint' is -0.5 at 1 s, clamped to 0"});
+  EXPECT_EQ(warnings_of("/extensions/KHR_lights_punctual/lights/0/intensity", {5, 5, -2}, "SCALAR"),
+            Messages{"animation 0: the 'intensity' of 'thing' is -2 at 2 s, clamped to 0"});
+  EXPECT_EQ(
+      warnings_of("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", {1, 1, 1}, "SCALAR"),
+      Messages{});
+  EXPECT_EQ(warnings_of("/cameras/0/perspective/yfov", {1, 4, 1}, "SCALAR").size(), 1U);
+}
+
 TEST(GltfPointer, OfTwoChannelsWithOneTargetTheFirstIsPlayed)
 {
   const json node{{"node", 0}, {"path", "translation"}};

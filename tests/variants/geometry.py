@@ -170,9 +170,8 @@ def scene_of(random, of):
     return gltf, left, right
 
 
-def check(program, random, of):
-    gltf, left, right = scene_of(random, of)
-    path = gltf.write_form(f"{program.folder}/scene", of["file"])
+def check_halves(program, path, gltf, of, left, right):
+    """The picture of a file has the colours left and right."""
     options = ["--frames", "1", "--fps", "1"] if "animations" in gltf.json else []
     if of["material"].startswith("lit "):
         options += ["--casters", of["material"].split()[1]]
@@ -181,3 +180,8 @@ def check(program, random, of):
     for x, color in ((1, left), (6, right)):
         error = numpy.abs(pixels[1:7, x] - color).max()
         expect(error <= 1e-3, f"column {x} differs by {error}: {pixels[4, x]}, not {color}")
+
+
+def check(program, random, of):
+    gltf, left, right = scene_of(random, of)
+    check_halves(program, gltf.write_form(f"{program.folder}/scene", of["file"]), gltf, of, left, right)

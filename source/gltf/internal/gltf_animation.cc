@@ -102,7 +102,7 @@ class AnimationImporter {
         if (targets.contains(target)) {
           throw Fault("target", "a channel before it has the same");
         }
-        import_channel(source, channel, node_places, animation);
+        import_channel(source, channel, what, node_places, animation);
         if (!target.empty()) {
           targets.insert(target);
         }
@@ -129,7 +129,7 @@ class AnimationImporter {
     return channel.node < 0 ? "" : fmt::format("/nodes/{}/{}", channel.node, channel.path);
   }
 
-  void import_channel(const Model::Animation &source, const Model::AnimationChannel &channel,
+  void import_channel(const Model::Animation &source, const Model::AnimationChannel &channel, const std::string &what,
                       std::map<int, std::size_t> &node_places, scene::Animation &animation)
   {
     const Model::AnimationSampler &sampler = source.samplers[std::size_t(channel.sampler)];
@@ -156,7 +156,7 @@ class AnimationImporter {
     if (!property) {
       throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
     }
-    import_value_channel(sampler, *parts, *property, animation);
+    import_value_channel(sampler, *parts, *property, what, animation);
   }
 
   void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
@@ -275,7 +275,7 @@ class AnimationImporter {
   }
 
   void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
-                            const scene::Description &property, scene::Animation &animation)
+                            const scene::Description &property, const std::string &what, scene::Animation &animation)
   {
     constexpr std::array<Model::ElementType, 5> types = {Model::ElementType::Scalar, Model::ElementType::Scalar,
                                                          Model::ElementType::Vec2, Model::ElementType::Vec3,
@@ -295,6 +295,9 @@ class AnimationImporter {
       }
       value.target = handle;
       value.factor = factor;
+      if (!has_target) {
+        warn_of_range(value, parts, property, what, scene_.pool<T>()[handle].name);
+      }
       has_target = true;
       scene::add_value(animation, value);
     };
@@ -322,6 +325,27 @@ class AnimationImporter {
     }
     if (!has_target) {
       throw Fault("pointer", "its target is not in the scene");
+    }
+  }
+
+  /** Names the first value that \a property does not allow. scene::pose() takes the nearest one that it allows. */
+  void warn_of_range(const AnimatedValue &value, const PointerParts &parts, const scene::Description &property,
+                     const std::string &what, const std::string &target)
+  {
+    const Track &track = *value.track;
+    const bool is_spline = track.interpolation == Interpolation::CubicSpline;
+    for (std::size_t key = 0; key < track.times.size(); key++) {
+      for (std::size_t i = 0; i < track.width; i++) {
+        // A key of a spline has a tangent before its value, and one after it.
+        const double number = track.values[track.width * (is_spline ? 3 * key + 1 : key) + i];
+        const double factor = i < 3 ? value.factor[int(i)] : 1.0;
+        if (!property.allows(number * factor)) {
+          warnings_.add(what, fmt::format("the '{}' of '{}' is {} at {} s, clamped to {}", parts.path,
+                                          printable(target), text(number), text(track.times[key]),
+                                          text(property.nearest(number * factor) / factor)));
+          return;
+        }
+      }
     }
   }
 
