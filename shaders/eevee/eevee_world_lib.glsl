@@ -61,7 +61,7 @@ float world_arriving(WorldParts parts, Surface surface, vec3 direction)
   vec3 is_positive = step(0.0, direction);
   // The light on a surface is between those on surfaces that face the axes (McTaggart 2004).
   vec3 weight = direction * direction * mix(world.whole_negative.xyz, world.whole_positive.xyz, is_positive);
-  vec3 above = 0.5 + 0.5 * surface.normal_ws * (2.0 * is_positive - 1.0);
+  vec3 above = 0.5 + 0.5 * surface.geometric_normal_ws * (2.0 * is_positive - 1.0);
   float whole = dot(weight, above);
   float arriving = dot(weight, mix(parts.negative, parts.positive, is_positive));
   return arriving < whole ? arriving / whole : 1.0;

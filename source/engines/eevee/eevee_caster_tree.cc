@@ -98,7 +98,9 @@ void BoxTree::visit(const glm::vec3 &origin, const glm::vec3 &direction, const f
     }
     const Node &node = nodes_[entry.node];
     for (std::uint32_t i = 0; i < node.count; i++) {
-      visit(items_[node.next + i]);
+      if (visit(items_[node.next + i])) {
+        return;
+      }
     }
     if (node.count > 0) {
       continue;
@@ -177,7 +179,7 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
   return changed_bounds(casters, casters_);
 }
 
-RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws) const
+RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest) const
 {
   RayHit hit = RayHit::None;
   float t_max = std::numeric_limits<float>::max();
@@ -201,7 +203,9 @@ RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_
         t_max = t;
         hit = (determinant < 0.0F) == instance.is_mirrored ? RayHit::Front : RayHit::Back;
       }
+      return hit != RayHit::None && !is_nearest;
     });
+    return hit != RayHit::None && !is_nearest;
   });
   return hit;
 }

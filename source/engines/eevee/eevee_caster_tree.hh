@@ -22,7 +22,9 @@ class BoxTree {
  public:
   BoxTree() = default;
   explicit BoxTree(std::span<const scene::Bounds> boxes);
-  /** Call \a visit with the index of each item in a leaf that the ray meets before \a t_max, which \a visit may lower.
+  /**
+   * Call \a visit with the index of each item in a leaf that the ray meets before \a t_max, which \a visit may lower.
+   * Ends when \a visit returns true.
    */
   template <typename Visit>
   void visit(const glm::vec3 &origin, const glm::vec3 &direction, const float &t_max, Visit &&visit) const;
@@ -40,7 +42,7 @@ class BoxTree {
   std::vector<std::uint32_t> items_;
 };
 
-/** What a ray meets first. */
+/** The side of a triangle that a ray meets. */
 enum class RayHit : std::uint8_t { None, Front, Back };
 
 /**
@@ -51,9 +53,11 @@ class CasterTree {
  public:
   /** Take the casters of \a scene. \return the bounds of those that are new, gone or have changed */
   std::vector<scene::Bounds> update(const render_scene::RenderScene &scene);
-  /** Both sides of all triangles block a ray. \a direction_ws: of any length but 0. May be called by several threads.
+  /**
+   * Both sides of all triangles block a ray. \a direction_ws: of any length but 0. \a is_nearest: return the side of
+   * the nearest triangle; otherwise of any, which takes less time. May be called by several threads.
    */
-  [[nodiscard]] RayHit trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws) const;
+  [[nodiscard]] RayHit trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest) const;
   [[nodiscard]] bool empty() const
   {
     return instances_.empty();

@@ -20,22 +20,25 @@ namespace {
 /** Most probes along an axis. */
 constexpr int axis_probes = 8;
 constexpr int probe_rays = 256;
+/** The first rays of a probe, which find bodies around it. */
+constexpr int body_rays = 32;
 
-/** Direction number \a i of \a count, evenly over the sphere (spiral of Fibonacci). \a turn: in turns around the y
- * axis. */
-glm::vec3 spiral_direction(int i, int count, double turn)
-{
-  const double y = 1.0 - (2.0 * i + 1.0) / count;
-  const double across = std::sqrt(std::max(1.0 - y * y, 0.0));
-  const double azimuth = 2.0 * std::numbers::pi * (i / std::numbers::phi + turn);
-  return {float(across * std::cos(azimuth)), float(y), float(across * std::sin(azimuth))};
-}
-
-/** Direction of a ray of a probe. Probes have other directions, so that a mean over some probes has more of them. */
+/**
+ * Direction of a ray of a probe. Directions are even over the sphere, and mirrored in all axes: a plane that is
+ * perpendicular to one blocks exactly a half of the light along the others. Probes have other directions, so that a
+ * mean over some probes has more of them.
+ */
 glm::vec3 ray_direction(std::size_t probe, int ray)
 {
-  const double turn = double(probe) / (std::numbers::phi * std::numbers::phi);
-  return spiral_direction(ray, probe_rays, turn - std::floor(turn));
+  constexpr int octants = 8;
+  const int i = ray / octants;
+  const double y = (i + 0.5) * octants / probe_rays;
+  const double across = std::sqrt(1.0 - y * y);
+  const double turn = i / std::numbers::phi + double(probe) / (std::numbers::phi * std::numbers::phi);
+  const double azimuth = 0.5 * std::numbers::pi * (turn - std::floor(turn));
+  const glm::vec3 direction(across * std::cos(azimuth), y, across * std::sin(azimuth));
+  const glm::ivec3 is_negative(ray & 1, ray >> 1 & 1, ray >> 2 & 1);
+  return direction * glm::vec3(1 - 2 * is_negative);
 }
 
 /** Luminance of the rest of \a world from \a direction. */
@@ -94,7 +97,7 @@ void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
     for (int ray = 0; ray < probe_rays; ray++) {
       const glm::vec3 direction = ray_direction(probe, ray);
       if (std::ranges::any_of(changed, [&](const scene::Bounds &box) { return meets(box, position_ws, direction); })) {
-        hits_[probe * probe_rays + std::size_t(ray)] = casters_.trace(position_ws, direction);
+        hits_[probe * probe_rays + std::size_t(ray)] = casters_.trace(position_ws, direction, ray < body_rays);
         count++;
       }
     }
@@ -109,10 +112,10 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
   probes_.assign(std::size_t(probe_count()), {});
   for (std::size_t probe = 0; probe < probes_.size(); probe++) {
     const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
-    const auto backs = std::ranges::count(hits, RayHit::Back);
-    const auto fronts = std::ranges::count(hits, RayHit::Front);
+    const auto backs = std::ranges::count(hits.first(body_rays), RayHit::Back);
+    const auto fronts = std::ranges::count(hits.first(body_rays), RayHit::Front);
     // Below a ground of one side, half of the rays meet its back.
-    probes_[probe].is_valid = 4 * backs < probe_rays || backs < 4 * fronts;
+    probes_[probe].is_valid = 4 * backs < body_rays || backs < 4 * fronts;
     glm::vec3 positive(0.0F);
     glm::vec3 negative(0.0F);
     glm::vec3 all_positive(0.0F);

@@ -224,11 +224,11 @@ TEST_F(WorldGpuTest, OneFrameOfAClosedRoomIsBlack)
   EXPECT_EQ(brightest(), 0.0F);
 }
 
-/** What blocks nothing changes no bit of a frame: shapes without a concave place, and objects without shadows. */
+/** A convex body alone keeps its light but for the error of the probes. Objects without shadows change no bit. */
 TEST_F(WorldGpuTest, OneFrameWithoutOcclusionIsThatWithoutShadows)
 {
   test::remove_objects(scene);
-  add_half_world(1, {1.0F, 0.8F, 0.6F}, {0.3F, 0.3F, 0.6F});
+  scene.set_world(scene::World{.color = {1.0F, 0.8F, 0.6F}});
   scene.edit(material, [](scene::Material &value) { value.roughness = 0.4F; });
   const auto box = test::add_box_mesh(scene, material);
   test::add_object(scene, box, glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1, 2, 3))));
@@ -240,8 +240,8 @@ TEST_F(WorldGpuTest, OneFrameWithoutOcclusionIsThatWithoutShadows)
   const std::vector<glm::vec4> expected = drawn(scene::ShadowKind::None);
   const std::vector<glm::vec4> alone = drawn(scene::ShadowKind::Hard);
   for (std::size_t i = 0; i < alone.size(); i++) {
-    // Each probe has 256 rays.
-    test::expect_near(glm::vec3(alone[i]), glm::vec3(expected[i]), 0.02F);
+    // Between six directions, a face that is turned to none of them loses up to a tenth.
+    test::expect_near(glm::vec3(alone[i]), glm::vec3(expected[i]), 0.06F);
   }
   test::add_object(scene, box, glm::translate(glm::dmat4(1.0), {1, 2, 1}));
   const std::vector<glm::vec4> without = drawn(scene::ShadowKind::None);
