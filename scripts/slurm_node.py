@@ -34,13 +34,15 @@ class SlurmNode:
 
     def __init__(self, folder):
         self.folder = folder
+        self.is_started = False
 
     def start(self):
         folder = self.folder
+        folder.mkdir(parents=True)
         name = socket.gethostname()
         memory_mib = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") * 9 // 10 >> 20
         for part in ("state", "spool"):
-            (folder / part).mkdir(parents=True)
+            (folder / part).mkdir()
         (folder / "munge.key").write_bytes(os.urandom(1024))
         os.chmod(folder / "munge.key", 0o400)
         (folder / "slurm.conf").write_text(f"""ClusterName=test
@@ -71,6 +73,7 @@ NodeName={name} NodeAddr=127.0.0.1 CPUs=2 RealMemory={memory_mib} State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 """)
         os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
+        self.is_started = True
         run("munged", "--force", *(f"--{what}={folder}/munge.{end}" for what, end in (
             ("key-file", "key"), ("socket", "sock"), ("pid-file", "pid"), ("log-file", "log"), ("seed-file", "seed"))))
         run("slurmctld")
@@ -98,8 +101,13 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         run("slurmd")
 
     def stop(self):
-        if "SLURM_CONF" in os.environ:
-            run("scancel", "--user=root", status=None)
+        # Otherwise the files in the folder, and SLURM_CONF, are of another cluster.
+        if not self.is_started:
+            return
+        run("scancel", "--user=root", status=None)
+        end = time.monotonic() + 5
+        while run("squeue", "-h", status=None).strip() and time.monotonic() < end:
+            time.sleep(0.2)
         for daemon in ("slurmd", "slurmctld", "munge"):
             try:
                 os.kill(self.pid(daemon), signal.SIGKILL)

@@ -40,7 +40,7 @@ void print_message(fmt::format_string<Arguments...> format, Arguments &&...argum
   static_cast<void>(std::fputs(fmt::format(format, std::forward<Arguments>(arguments)...).c_str(), stderr));
 }
 
-/** A check of an option: CLI::Range, which accepts "nan", without that. */
+/** A check of an option that accepts numbers from \a min to \a max. CLI::Range alone also accepts "nan". */
 [[nodiscard]] inline CLI::Validator number_range(double min, double max)
 {
   return CLI::Validator(CLI::Range(min, max)) & CLI::Validator(

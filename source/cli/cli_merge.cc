@@ -349,7 +349,7 @@ Status merge_plan(const std::string &path, bool is_checked_only)
       not_needed.insert(names.begin(), names.end());
       divided.erase(picture.name);
     }
-    else if (std::filesystem::exists(picture.name)) {
+    else if (std::error_code ignored; std::filesystem::exists(picture.name, ignored)) {
       joined_faults.push_back(picture.fault);
     }
   }

@@ -712,8 +712,11 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   // The first samples of a frame take longer than the others.
   constexpr int sample_count_min = 4;
   constexpr double seconds_min = 1.0;
-  const int sample_count =
-      draw_while([&](int drawn) { return drawn < sample_count_min || seconds_since(draw_start) < seconds_min; });
+  const int sample_count = draw_while([&](int drawn) {
+    // Recording commands may take less time than drawing.
+    device->finish();
+    return drawn < sample_count_min || seconds_since(draw_start) < seconds_min;
+  });
   measured.cost.sample_seconds = seconds_since(draw_start) / sample_count;
   return measured;
 }

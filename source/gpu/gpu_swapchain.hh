@@ -24,7 +24,8 @@ class Swapchain {
 
   /**
    * Take the next image for draws, until present(). Its content is undefined; positions in it are from its lower left
-   * corner. Waits at most a second for an image. The images are made anew if \a size_px, of the window, has changed, if
+   * corner. Waits at most a second for an image, and then until the window system
+   * has released it. The images are made anew if \a size_px, of the window, has changed, if
    * the window system asks for it, and after the loss of the surface, which the message sink is told.
    *
    * \return nullptr: there is no image now, as while the window is minimised. The size may differ from \a size_px

@@ -354,8 +354,9 @@ class Memory {
   static ssize_t read(void *memory, char *bytes, std::size_t size)
   {
     auto &[content, position, file] = *static_cast<Memory *>(memory);
-    size = std::min(size, content.size() - std::min(position, content.size()));
-    std::copy_n(content.begin() + std::ptrdiff_t(position), size, bytes);
+    const std::size_t first = std::min(position, content.size());
+    size = std::min(size, content.size() - first);
+    std::copy_n(content.begin() + std::ptrdiff_t(first), size, bytes);
     position += size;
     return ssize_t(size);
   }

@@ -49,7 +49,7 @@ class Stream {
   [[nodiscard]] std::uint64_t position();
   /** Continue at \a position. If it is before the end, the following bytes are overwritten. \throws Error, as write */
   void seek(std::uint64_t position);
-  /** The next \a size bytes, which were written before. \throws Error, as write. Call seek before the next write. */
+  /** The next \a size bytes, which were written before. Call seek between writes and reads. \throws Error, as write */
   void read(void *bytes, std::size_t size);
   /** Report an earlier failure, for writers that lose exceptions. \throws Error if a call has failed */
   void check() const;

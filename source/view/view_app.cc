@@ -552,6 +552,10 @@ void App::draw_frame(bool may_wait)
       }
     });
   }
+  lost_frames_ = is_device_lost_ ? lost_frames_ + 1 : 0;
+  if (lost_frames_ > context_attempts) {
+    throw std::runtime_error(fmt::format("{} frames in a row could not be shown. {}", lost_frames_, rescue()));
+  }
   if (is_device_lost_) {
     make_context_anew();
   }

@@ -271,6 +271,8 @@ class App {
   int frames_to_draw_ = 3;
   /** A call has thrown gpu::DeviceLost. */
   bool is_device_lost_ = false;
+  /** Frames since the last one that was shown. */
+  int lost_frames_ = 0;
   bool is_quit_ = false;
   bool is_staying_ = false;
   std::vector<Message> messages_;

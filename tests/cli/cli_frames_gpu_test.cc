@@ -144,7 +144,8 @@ TEST_F(SlowFramesTest, FramesOfProcessesThatWereKilledAreWholeAndResumedToTheEnd
   std::array<bool, 100> is_whole{};
   bool is_done = false;
   while (!is_done && kills < 200) {
-    // From before the first frame is drawn to many frames later.
+    // From before the first frame is drawn to many frames later. The first run compiled programs: others take a half of
+    // its time.
     const double seconds = std::uniform_real_distribution<double>(0.05, 0.5)(random) * whole_seconds;
     const std::string command = "cd '" + folder.string() + "' && timeout -s KILL " + std::to_string(seconds) + " '" +
                                 GNOMON_PROGRAM + "' " + frames + "killed_##.exr --resume > stdout.txt 2> stderr.txt";

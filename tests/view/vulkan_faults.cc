@@ -89,7 +89,12 @@ VkResult VKAPI_PTR faulty_create(VkDevice device, const VkSwapchainCreateInfoKHR
                                  const VkAllocationCallbacks *allocator, VkSwapchainKHR *swapchain)
 {
   VkResult result = VK_SUCCESS;
-  return create.is_fault(result) ? result : create.function(device, info, allocator, swapchain);
+  if (create.is_fault(result)) {
+    // No swapchain, as the output of a call that fails may be.
+    *swapchain = VkSwapchainKHR(std::uintptr_t(16));
+    return result;
+  }
+  return create.function(device, info, allocator, swapchain);
 }
 
 VkResult VKAPI_PTR faulty_capabilities(VkPhysicalDevice device, VkSurfaceKHR surface, VkSurfaceCapabilitiesKHR *of)

@@ -102,8 +102,10 @@ VulkanImage VulkanDevice::make_host_image(std::string_view what, const TextureDe
   context_->instance.vkGetPhysicalDeviceFormatProperties(context_->physical_device, image.format, &properties);
   constexpr VkFormatFeatureFlags needed =
       VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
-  if ((properties.optimalTilingFeatures & needed) != needed) {
-    throw Error("{}: the device cannot look up and filter VkFormat {} of the host's image", what, desc.host.format);
+  const bool is_depth = (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
+  if ((properties.optimalTilingFeatures & needed) != needed || is_depth) {
+    throw Error("{}: the device cannot look up and filter colours in VkFormat {} of the host's image", what,
+                desc.host.format);
   }
   constexpr std::array<VkImageLayout, 3> layouts = {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                                     VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL};
@@ -415,6 +417,11 @@ void VulkanDevice::host_batch_create(ResourceId id, const std::string &name, con
     if (stream.offset_bytes % component_bytes != 0 || stream.stride_bytes % component_bytes != 0) {
       throw Error("{}: the {} of the host begin at byte {} with a stride of {} bytes, no multiples of {}", what,
                   stream_name, stream.offset_bytes, stream.stride_bytes, component_bytes);
+    }
+    const std::uint32_t vertex_bytes = std::uint32_t(vertex_formats()[i].component_count) * component_bytes;
+    if (std::uint32_t(stream.stride_bytes) < vertex_bytes) {
+      throw Error("{}: the {} of the host have a stride of {} bytes, and each has {}", what, stream_name,
+                  stream.stride_bytes, vertex_bytes);
     }
     const VkFormat format = vertex_format(vertex_formats()[i].component_count, stream.type);
     VkFormatProperties properties{};

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace gnomon::gpu {
 
@@ -109,6 +111,10 @@ VkPresentModeKHR VulkanSwapchain::choose_mode()
 
 void VulkanSwapchain::create(glm::ivec2 size_px)
 {
+  if (context_.surface == VK_NULL_HANDLE) {
+    // An earlier attempt failed.
+    context_.make_surface_anew();
+  }
   VkSurfaceCapabilitiesKHR of{};
   if (!has_succeeded(context_.surfaces.vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical_device,
                                                                                  context_.surface, &of))) {
@@ -145,10 +151,12 @@ void VulkanSwapchain::create(glm::ivec2 size_px)
                             : VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
   info.presentMode = choose_mode();
   info.clipped = VK_TRUE;
-  if (!has_succeeded(vk_.vkCreateSwapchainKHR(context_.device, &info, nullptr, &swapchain_))) {
-    swapchain_ = VK_NULL_HANDLE;
+  // After a failure, the output is undefined.
+  VkSwapchainKHR made = VK_NULL_HANDLE;
+  if (!has_succeeded(vk_.vkCreateSwapchainKHR(context_.device, &info, nullptr, &made))) {
     return;
   }
+  swapchain_ = made;
   size_px_ = size_px;
   is_outdated_ = false;
   try {
@@ -225,11 +233,15 @@ const Framebuffer *VulkanSwapchain::acquire(glm::ivec2 size_px)
       return nullptr;
     }
     if (has_succeeded(result)) {
+      // An image that is not presented is not given back, so that the swapchain is replaced unless all of this
+      // succeeds.
+      const bool was_outdated = std::exchange(is_outdated_, true);
       context_.check(
           vk_.vkWaitForFences(context_.device, 1, &acquired_, VK_TRUE, std::numeric_limits<std::uint64_t>::max()),
           window_name);
       context_.check(vk_.vkResetFences(context_.device, 1, &acquired_), window_name);
       device_.begin_image(images_[index].framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+      is_outdated_ = was_outdated;
       drawn_ = index;
       return &images_[index].framebuffer;
     }
