@@ -367,24 +367,6 @@ TEST_F(VulkanHostGpu, TheBackendIsTheHosts)
   expect_contains(error_of([&] { create(Backend::OpenGl); }), "backend 'gl': the host's is 'vulkan'");
 }
 
-TEST_F(VulkanHostGpu, AnImageHasNoDepth)
-{
-  const auto device = make_device();
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
-  const Framebuffer framebuffer =
-      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
-  device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
-  for (const State state : {State::DepthNearerEqual, State::DepthLessEqual, State::WriteDepth}) {
-    CommandList list;
-    list.begin_pass("deep", framebuffer, {});
-    list.set_state(State::WriteColor | state);
-    list.end_pass();
-    expect_contains(error_of([&] { device->submit(list); }), "framebuffer 'theirs' of the host's image has no depth");
-  }
-  device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-  host->destroy(image);
-}
-
 /** What draws of a list write to a picture of floats. */
 class FloatPicture {
  public:
