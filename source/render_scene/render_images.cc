@@ -3,6 +3,8 @@
 
 #include "render_materials.hh"
 
+#include "scene_image.hh"
+
 #include <algorithm>
 #include <bit>
 

@@ -4,7 +4,6 @@
 #include "render_host_resources.hh"
 
 #include "scene.hh"
-#include "scene_image.hh"
 
 #include "gpu_device.hh"
 

@@ -5,7 +5,6 @@
 
 #include <glm/ext/vector_uint2.hpp>
 
-#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -22,15 +21,6 @@ namespace gnomon::scene {
 
 /** The size, in texels, of an image of \a size after reduced(). */
 [[nodiscard]] glm::uvec2 reduced_size(glm::uvec2 size, std::uint32_t size_max);
-
-/** What a mask covers. */
-struct MaskCover {
-  /** Least alpha of what is covered. 0: no mask. */
-  float cutoff = 0.0F;
-  /** Whether alphas are interpolated between the centres of texels; otherwise a texel is covered or not. */
-  bool is_linear = false;
-  auto operator<=>(const MaskCover &) const = default;
-};
 
 /**
  * \a image with at most \a size_max texels along both edges, and about the same ratio of its edges. Each texel is the

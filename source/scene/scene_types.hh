@@ -10,6 +10,7 @@
 #include <glm/vec4.hpp>
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -83,6 +84,15 @@ enum class ImageUse {
   Coverage,
   /** The same of masked surfaces: a texel covers all or nothing. */
   Mask,
+};
+
+/** What a mask covers. */
+struct MaskCover {
+  /** Least alpha of what is covered. 0: no mask. */
+  float cutoff = 0.0F;
+  /** Whether alphas are interpolated between the centres of texels; otherwise a texel is covered or not. */
+  bool is_linear = false;
+  auto operator<=>(const MaskCover &) const = default;
 };
 
 /** An image and its sampler. */
