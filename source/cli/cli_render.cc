@@ -689,7 +689,7 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
   scene::Scene scene = import_scene(options.scene, options.import_options());
   MeasuredScene measured{content_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
-  // What parts would refuse is refused before there are many.
+  // A plan refuses the options that each of its parts would refuse.
   Aov(options.aov).check(scene);
   static_cast<void>(parse_debug(options.debug));
   static_cast<void>(prepare(options, frames, scene));

@@ -209,7 +209,7 @@ namespace {
 
 struct ColorUse {
   scene::ImageUse use = scene::ImageUse::Color;
-  /** Of the first mask. */
+  /** The cover of the first mask. */
   scene::MaskCover mask{};
 };
 

@@ -246,7 +246,7 @@ void VulkanContext::load_instance()
   }
   GNOMON_VULKAN_INSTANCE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
-  // Of extensions that a window needs; all others have none of them.
+  // Functions of extensions that only devices with a window enable. Otherwise, they are null.
 #define GNOMON_VULKAN_LOAD(NAME) surfaces.NAME = instance_function<PFN_##NAME>(#NAME);
   GNOMON_VULKAN_SURFACE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD

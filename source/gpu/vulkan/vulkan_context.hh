@@ -36,7 +36,7 @@ class VulkanContext {
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
-  /** Of the window, with the functions of surfaces and swapchains. VK_NULL_HANDLE: there is no window. */
+  /** The window's surface. VK_NULL_HANDLE: there is no window, and no functions of surfaces and swapchains. */
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   VulkanSurfaceTable surfaces{};
   VulkanSwapchainTable swapchains{};
@@ -90,7 +90,7 @@ class VulkanContext {
   [[nodiscard]] bool can_present(VkPhysicalDevice candidate, std::uint32_t family);
   /** The first family whose queues draw and present; the number of families: there is none. */
   [[nodiscard]] std::uint32_t usable_family(VkPhysicalDevice candidate);
-  /** What \a candidate lacks, by name. */
+  /** The names of the features and extensions that \a candidate lacks. */
   [[nodiscard]] std::vector<std::string> missing_in(VkPhysicalDevice candidate,
                                                     const VkPhysicalDeviceProperties &properties);
   /** Sets what follows from the physical device and from the features that are enabled. */

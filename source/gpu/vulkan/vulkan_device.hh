@@ -31,7 +31,7 @@ class VulkanDevice final : public Device {
   {
     return *context_;
   }
-  /** Of a lost device: destroy at once what was destroyed while the device used it. */
+  /** Destroy retired resources at once, without waiting for the device, which is lost. */
   void destroy_retired()
   {
     submissions_.end();

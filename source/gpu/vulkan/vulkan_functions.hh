@@ -35,7 +35,7 @@
   DO(vkQueueSubmit2) DO(vkResetDescriptorPool) DO(vkResetQueryPool) DO(vkUpdateDescriptorSets) \
   DO(vkWaitSemaphores)
 
-// With a window alone.
+// Only for devices with a window.
 #define GNOMON_VULKAN_SURFACE_FUNCTIONS(DO) \
   DO(vkDestroySurfaceKHR) DO(vkGetPhysicalDeviceSurfaceCapabilitiesKHR) DO(vkGetPhysicalDeviceSurfaceFormatsKHR) \
   DO(vkGetPhysicalDeviceSurfacePresentModesKHR) DO(vkGetPhysicalDeviceSurfaceSupportKHR)

@@ -89,7 +89,7 @@ VertexTypes vertex_types(const HostBatch *host)
 
 VkFormat vertex_format(int component_count, VertexType type)
 {
-  // Of two, three and four components.
+  // Formats of two, three and four components.
   constexpr std::array<std::array<VkFormat, 3>, 6> formats = {{
       {VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT},
       {VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT},

@@ -116,7 +116,7 @@ VulkanImage VulkanDevice::make_host_image(std::string_view what, const TextureDe
   image.levels = std::uint32_t(desc.mip_levels);
   image.view = make_view(*context_, what, image, image.format, VK_IMAGE_VIEW_TYPE_2D,
                          {VK_IMAGE_ASPECT_COLOR_BIT, 0, image.levels, 0, 1});
-  // It is not destroyed with the view.
+  // The host owns the image: only the view is destroyed.
   image.handle = VK_NULL_HANDLE;
   return image;
 }

@@ -57,7 +57,7 @@ class VulkanSwapchain final : public Swapchain {
   VkFence acquired_ = VK_NULL_HANDLE;
   VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
   std::vector<Image> images_;
-  /** Of the window when the swapchain was made. */
+  /** Size of the window when the swapchain was made. */
   glm::ivec2 size_px_{0};
   /** The swapchain is to be replaced. */
   bool is_outdated_ = false;
