@@ -367,6 +367,33 @@ TEST_F(VulkanHostGpu, TheBackendIsTheHosts)
   expect_contains(error_of([&] { create(Backend::OpenGl); }), "backend 'gl': the host's is 'vulkan'");
 }
 
+/** An error within a pass ends it, so that the next list draws. */
+TEST_F(VulkanHostGpu, AnImageHasNoDepthAndIsDrawnIntoAfterTheError)
+{
+  const auto device = make_device();
+  const Picture picture(*device);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const Framebuffer framebuffer =
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+  for (const State state : {State::DepthNearerEqual, State::DepthLessEqual, State::WriteDepth}) {
+    device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
+    CommandList list;
+    list.begin_pass("deep", framebuffer, {.clear_color = {1, 1, 1, 1}});
+    list.set_state(State::WriteColor | state);
+    list.end_pass();
+    expect_contains(error_of([&] { device->submit(list); }), "framebuffer 'theirs' of the host's image has no depth");
+    device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load}));
+    device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    const std::vector<Texel> texels = host->read(image);
+    for (int row = 0; row < size_px.y; row++) {
+      for (int x = 0; x < size_px.x; x++) {
+        EXPECT_EQ(texels[std::size_t(row * size_px.x + x)], drawn(x, size_px.y - 1 - row)) << x << ' ' << row;
+      }
+    }
+  }
+  host->destroy(image);
+}
+
 /** What draws of a list write to a picture of floats. */
 class FloatPicture {
  public:

@@ -336,6 +336,12 @@ void VulkanDevice::set_state(State state)
   list_.pipeline.state = pipeline_state(state);
   const VkCompareOp compare = vulkan_compare(state);
   const bool is_written = has(state, State::WriteDepth);
+  if (list_.pass && (is_written || compare != VK_COMPARE_OP_ALWAYS)) {
+    const VulkanFramebuffer &framebuffer = framebuffers_.at(list_.pass->framebuffer);
+    if (framebuffer.host) {
+      throw Error("framebuffer '{}' of the host's image has no depth, which draws test or write", framebuffer.name);
+    }
+  }
   // As in OpenGL, depth is written only if it is tested.
   context_->vk.vkCmdSetDepthTestEnable(commands, compare != VK_COMPARE_OP_ALWAYS || is_written ? VK_TRUE : VK_FALSE);
   context_->vk.vkCmdSetDepthWriteEnable(commands, is_written ? VK_TRUE : VK_FALSE);
