@@ -7,6 +7,7 @@
 #include "gpu_device.hh"
 
 #include <cmath>
+#include <cstring>
 
 namespace gnomon::gpu {
 namespace {
@@ -142,6 +143,69 @@ TEST_P(HostFramebufferTest, OtherDrawBuffersKeepTheirContent)
   draw(host, glm::vec4(1), {}, State::WriteColor);
   EXPECT_EQ(host.pixels().at(0, 0), (std::array<int, 4>{255, 255, 255, 255}));
   EXPECT_EQ(other.pixels(), before);
+}
+
+/** Mesa draws windows from the top. A program that has been drawn into one must know where it is in another target. */
+TEST_P(HostFramebufferTest, PositionsOfFragmentsAreFromTheLowerLeftCorner)
+{
+  const HostPicture picture(size_px, GL_RGBA8, 0);
+  const Texture texture = device->create_texture({.name = "own", .width = size_px.x, .height = size_px.y});
+  const Framebuffer own = device->create_framebuffer({"own", {{&texture}}, {}});
+  const bool has_window = GetParam() == test::HostKind::Glx;
+  enum Target { Window, Theirs, Own };
+  const std::vector<std::array<Target, 4>> orders =
+      has_window ? std::vector<std::array<Target, 4>>{{Window, Theirs, Own, Window}, {Own, Window, Theirs, Own}}
+                 : std::vector<std::array<Target, 4>>{{Theirs, Own, Theirs, Own}};
+  for (const auto &order : orders) {
+    // Each draws with a variant that Mesa makes for its first target.
+    const Shader positions = make_shader(*device, "positions", test::CLIP_SPACE_VERT, R"(
+PUSH_CONSTANT_LAYOUT uniform push_constant_block
+{
+  vec4 scale;
+};
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = scale * vec4(floor(gl_FragCoord.xy), 0.0, 1.0);
+})");
+    for (const Target target : order) {
+      if (has_window) {
+        glClear(GL_COLOR_BUFFER_BIT);
+      }
+      CommandList list;
+      if (target == Own) {
+        list.begin_pass("positions", own, {});
+      }
+      else {
+        list.begin_pass("positions",
+                        target == Window ? HostFramebuffer{.name = 0, .size_px = size_px} : picture.framebuffer(),
+                        {.viewport = {{0, 0}, size_px}, .scissor = {{0, 0}, size_px}});
+      }
+      list.set_shader(positions.id());
+      list.set_state(State::WriteColor);
+      push_constants(list, positions, glm::vec4(1.0F / 255.0F));
+      append_draw(list, full);
+      list.end_pass();
+      device->submit(list);
+      Pixels pixels{size_px, std::vector<std::array<std::uint8_t, 4>>(std::size_t(size_px.x * size_px.y))};
+      if (target == Window) {
+        glReadPixels(0, 0, size_px.x, size_px.y, GL_RGBA, GL_UNSIGNED_BYTE, pixels.values.data());
+      }
+      else if (target == Theirs) {
+        pixels = picture.pixels();
+      }
+      else {
+        const std::vector<std::byte> bytes = device->read(texture);
+        std::memcpy(pixels.values.data(), bytes.data(), bytes.size());
+      }
+      for (int y = 0; y < size_px.y; y++) {
+        for (int x = 0; x < size_px.x; x++) {
+          ASSERT_EQ(pixels.at(x, y)[0], x) << x << ", " << y << " of target " << int(target);
+          ASSERT_EQ(pixels.at(x, y)[1], y) << x << ", " << y << " of target " << int(target);
+        }
+      }
+    }
+  }
 }
 
 TEST_P(HostFramebufferTest, TheHostsStateIsUnchanged)

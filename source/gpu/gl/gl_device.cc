@@ -106,6 +106,7 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
   has_unsound_depth_clears_ = std::string_view(driver_string(GL_VENDOR)) == "NVIDIA Corporation";
   glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timestamp_bits_);
   create_vertex_arrays();
+  glCreateFramebuffers(1, &other_framebuffer_);
 }
 
 GlDevice::~GlDevice()
@@ -127,6 +128,7 @@ GlDevice::~GlDevice()
   glDeleteVertexArrays(1, &shared_array_.name);
   glDeleteVertexArrays(1, &host_array_.name);
   glDeleteVertexArrays(1, &empty_vertex_array_);
+  glDeleteFramebuffers(1, &other_framebuffer_);
   for (const auto &dummies : dummies_) {
     for (const Dummy &one : dummies) {
       glDeleteTextures(1, &one.texture);

@@ -181,6 +181,8 @@ class GlDevice final : public Device {
   void release_buffers();
   /** Binds dummies to the samplers of the current program that the list has not bound. */
   void complete_textures();
+  /** Binds framebuffer \a name for draws, after its clears. */
+  void bind_for_draws(GLuint name);
 
   std::unique_ptr<GlContext> context_;
   /** The context that was current when the device was made, and is in each call. */
@@ -224,6 +226,11 @@ class GlDevice final : public Device {
   /** Reads the buffers of one batch of the host; made when the first such batch is made. */
   VertexArray host_array_;
   GLuint empty_vertex_array_ = 0;
+  /** \see bind_for_draws */
+  GLuint other_framebuffer_ = 0;
+  /** The framebuffer of the pass, and that of the last draw, is a window. */
+  bool is_window_ = false;
+  bool has_drawn_window_ = false;
   /** For streams that a batch of the host does not have: four zeros, and four ones. */
   GLuint absent_streams_ = 0;
   PoolBuffers pool_{};

@@ -282,6 +282,18 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
   // Clears respect the write masks.
   set_state(State::WriteColor | State::WriteDepth);
   load_attachments(framebuffer, actions, pass.host_framebuffer.has_value());
+  bind_for_draws(framebuffer.name);
+}
+
+void GlDevice::bind_for_draws(GLuint name)
+{
+  is_window_ = name == 0;
+  if (is_window_ || has_drawn_window_) {
+    // Mesa (22.3) draws windows from the top, and turns gl_FragCoord by a constant of the program. If a clear, also of
+    // the host, comes between the change of the framebuffer and the draw, it keeps the constant of the last program.
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, other_framebuffer_);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name);
+  }
 }
 
 void GlDevice::load_attachments(const GlFramebuffer &framebuffer, const PassActions &actions, bool is_of_host) const
@@ -393,6 +405,7 @@ void GlDevice::bind_texture(const Command &command)
 
 void GlDevice::complete_textures()
 {
+  has_drawn_window_ = is_window_;
   for (const DeclaredSampler &sampler : program_ ? program_->samplers : std::vector<DeclaredSampler>()) {
     if (sampler.unit >= bound_textures_.size()) {
       bound_textures_.resize(std::size_t(sampler.unit) + 1, GL_NONE);
