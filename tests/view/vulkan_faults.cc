@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Stands in for libvulkan.so.1 and passes all calls on to it, but for those that the environment variable
 // VULKAN_FAULTS names: FUNCTION:CALL:RESULT, separated by commas, where CALL counts from 1. Such a call returns the
-// VkResult; one of vkGetPhysicalDeviceSurfaceCapabilitiesKHR with 0 returns the size 0x0 of a window that is minimised.
+// VkResult; one of vkGetPhysicalDeviceSurfaceCapabilitiesKHR with 0 returns the size 0x0 of a window that is minimised;
+// one of vkCmdPipelineBarrier2 changes layouts, but orders nothing.
 #define VK_NO_PROTOTYPES
 #include <vulkan/vulkan.h>
 
@@ -12,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -56,6 +58,7 @@ Faulty<PFN_vkQueuePresentKHR> present{"vkQueuePresentKHR"};
 Faulty<PFN_vkQueueSubmit2> submit{"vkQueueSubmit2"};
 Faulty<PFN_vkCreateSwapchainKHR> create{"vkCreateSwapchainKHR"};
 Faulty<PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR> capabilities{"vkGetPhysicalDeviceSurfaceCapabilitiesKHR"};
+Faulty<PFN_vkCmdPipelineBarrier2> barrier{"vkCmdPipelineBarrier2"};
 
 VkResult VKAPI_PTR faulty_acquire(VkDevice device, VkSwapchainKHR swapchain, std::uint64_t timeout,
                                   VkSemaphore semaphore, VkFence fence, std::uint32_t *index)
@@ -108,6 +111,25 @@ VkResult VKAPI_PTR faulty_capabilities(VkPhysicalDevice device, VkSurfaceKHR sur
   return is_fault ? result : real_result;
 }
 
+void VKAPI_PTR faulty_barrier(VkCommandBuffer commands, const VkDependencyInfo *info)
+{
+  VkResult result = VK_SUCCESS;
+  if (!barrier.is_fault(result)) {
+    barrier.function(commands, info);
+    return;
+  }
+  std::vector<VkImageMemoryBarrier2> images(info->pImageMemoryBarriers,
+                                            info->pImageMemoryBarriers + info->imageMemoryBarrierCount);
+  for (VkImageMemoryBarrier2 &image : images) {
+    image.srcStageMask = image.dstStageMask = VK_PIPELINE_STAGE_2_NONE;
+    image.srcAccessMask = image.dstAccessMask = VK_ACCESS_2_NONE;
+  }
+  VkDependencyInfo weak = *info;
+  weak.memoryBarrierCount = 0;
+  weak.pImageMemoryBarriers = images.data();
+  barrier.function(commands, &weak);
+}
+
 /** \a of itself, or the function of this file that stands in for it. */
 PFN_vkVoidFunction standing_in(const char *name, PFN_vkVoidFunction of)
 {
@@ -122,6 +144,7 @@ PFN_vkVoidFunction standing_in(const char *name, PFN_vkVoidFunction of)
   replace(submit, &faulty_submit);
   replace(create, &faulty_create);
   replace(capabilities, &faulty_capabilities);
+  replace(barrier, &faulty_barrier);
   return of;
 }
 
