@@ -3,6 +3,9 @@
 
 #include "draw_target.hh"
 
+#include <glm/vec4.hpp>
+
+#include <array>
 #include <vector>
 
 namespace gnomon::view {
@@ -28,10 +31,32 @@ class InterfaceRenderer {
     /** From the upper left corner. */
     glm::vec2 position_px;
     glm::vec2 uv;
-    /** sRGB, four bytes. */
-    std::uint32_t color;
-    std::uint32_t padding[3];
+    /** sRGB. */
+    glm::vec4 color;
   };
+  /** A triangle within a rectangle: each of its four sides may add a vertex. */
+  struct Polygon {
+    std::array<Vertex, 7> vertices;
+    std::size_t count = 0;
+
+    void add(const Vertex &vertex)
+    {
+      vertices[count++] = vertex;
+    }
+  };
+  /** Triangles that are drawn with one texture, up to those of the next one. */
+  struct Draw {
+    gpu::ResourceId texture = 0;
+    std::size_t first_vertex = 0;
+  };
+
+  /** Gathers what ImGui::Render has made, within the rectangles that clip it. */
+  void gather();
+  /**
+   * Appends the part of \a polygon, a triangle, between two corners of a rectangle, as triangles: the rectangles of
+   * many commands then share a draw, and no fragment is tested.
+   */
+  void append_within(Polygon polygon, glm::vec2 low, glm::vec2 high);
 
   gpu::Device &device_;
   gpu::Texture font_;
@@ -42,6 +67,7 @@ class InterfaceRenderer {
   gpu::Buffer vertex_block_;
   /** Kept, so that a frame allocates no memory. */
   std::vector<Vertex> vertices_;
+  std::vector<Draw> draws_;
   gpu::CommandList list_;
 };
 
