@@ -5,6 +5,9 @@
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
 
 namespace gnomon {
 namespace {
@@ -34,7 +37,7 @@ TEST_F(CliVulkanTest, ThePictureIsThatOfOpenGl)
 {
   for (const std::string backend : {"gl", "vulkan"}) {
     const Finished finished = run("render " + example("plaza") + " --size 64x36 --samples 2 --backend " + backend +
-                                  " -o " + backend + ".exr --json " + backend + ".json");
+                                  " -o " + backend + ".exr --json " + backend + ".json --trace " + backend + ".trace");
     ASSERT_EQ(finished.status, 0) << finished.err;
   }
   EXPECT_NE(read("vulkan.json").find("\"Vulkan 1."), std::string::npos);
@@ -45,6 +48,18 @@ TEST_F(CliVulkanTest, ThePictureIsThatOfOpenGl)
   ASSERT_FALSE(difference.error);
   // Mesa compiles GLSL and SPIR-V in two ways, so that the last digits differ.
   EXPECT_LE(difference.rms_error, 1e-5);
+  // What a program is drawn with seldom differs, so that few pipelines are made.
+  std::map<std::string, int> pipelines;
+  const nlohmann::json trace = nlohmann::json::parse(read("vulkan.trace"));
+  for (const nlohmann::json &span : trace["traceEvents"]) {
+    if (span["name"] == "make pipeline") {
+      pipelines[span["args"]["of"]]++;
+    }
+  }
+  EXPECT_FALSE(pipelines.empty());
+  for (const auto &[program, count] : pipelines) {
+    EXPECT_LE(count, 2) << program;
+  }
 }
 
 TEST_F(CliVulkanTest, AutoTakesItWhereOpenGlDoesNotStartAndSaysWhy)

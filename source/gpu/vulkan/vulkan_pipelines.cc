@@ -109,9 +109,9 @@ std::uint32_t pipeline_state(State state)
   return std::uint32_t(state) & std::uint32_t(kept);
 }
 
-VulkanProgram::VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages,
-                             const std::vector<StageConstant> &constants)
-    : context_(context), name_(std::move(name)), interface_(interface_of(name_, stages))
+VulkanProgram::VulkanProgram(VulkanContext &context, std::string name, std::string variant,
+                             const std::vector<SpirvStage> &stages, const std::vector<StageConstant> &constants)
+    : context_(context), name_(std::move(name)), variant_(std::move(variant)), interface_(interface_of(name_, stages))
 {
   try {
     create(stages, constants);
@@ -204,7 +204,7 @@ VkPipeline VulkanProgram::pipeline(const PipelineKey &key)
 
 VkPipeline VulkanProgram::make(const PipelineKey &key)
 {
-  const trace::Span span("make pipeline", name_);
+  const trace::Span span("make pipeline", variant_);
   const auto state = State(key.state);
   const VertexInputs inputs =
       key.is_procedural ? VertexInputs() : vertex_inputs(interface_.vertex_inputs, key.has_objects, key.vertex_types);

@@ -47,8 +47,8 @@ inline constexpr std::uint32_t push_constant_bytes = 128;
 /** A program with its pipelines. */
 class VulkanProgram {
  public:
-  /** \throws Error that names the shader \a name */
-  VulkanProgram(VulkanContext &context, std::string name, const std::vector<SpirvStage> &stages,
+  /** \a variant: the name with the defines, for traces. \throws Error that names the shader \a name */
+  VulkanProgram(VulkanContext &context, std::string name, std::string variant, const std::vector<SpirvStage> &stages,
                 const std::vector<StageConstant> &constants);
   ~VulkanProgram();
   VulkanProgram(const VulkanProgram &) = delete;
@@ -76,6 +76,7 @@ class VulkanProgram {
 
   VulkanContext &context_;
   std::string name_;
+  std::string variant_;
   SpirvInterface interface_;
   std::vector<VkPipelineShaderStageCreateInfo> stages_;
   /** Values of the specialisation constants of a stage. `stages_` points to them. */

@@ -435,14 +435,15 @@ void VulkanDevice::host_batch_create(ResourceId id, const std::string &name, con
 
 void VulkanDevice::shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled)
 {
-  const trace::Span span(compiled.empty() ? "compile program" : "load program",
-                         fmt::format("{} {}", create.desc.name, fmt::join(create.desc.defines, " ")));
+  const std::string variant = fmt::format("{} {}", create.desc.name, fmt::join(create.desc.defines, " "));
+  const trace::Span span(compiled.empty() ? "compile program" : "load program", variant);
   std::vector<SpirvStage> stages = unpacked(compiled);
   if (stages.empty()) {
     stages = compile_(create.desc.name, create.stages);
     compiled = packed(stages);
   }
-  programs_.insert(create.id, std::make_shared<VulkanProgram>(*context_, create.desc.name, stages, create.constants));
+  programs_.insert(create.id,
+                   std::make_shared<VulkanProgram>(*context_, create.desc.name, variant, stages, create.constants));
   check_made(ResourceKind::Shader, create.id, fmt::format("shader '{}'", create.desc.name));
 }
 
