@@ -295,6 +295,64 @@ TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
   lose(&VulkanDeviceTable::vkGetQueryPoolResults);
 }
 
+/** Descriptor pools that are made, and that are used again. */
+struct CountedPools {
+  static inline PFN_vkCreateDescriptorPool real_create = nullptr;
+  static inline PFN_vkResetDescriptorPool real_reset = nullptr;
+  static inline int made = 0;
+  static inline int reset = 0;
+
+  static VkResult VKAPI_PTR create_pool(VkDevice device, const VkDescriptorPoolCreateInfo *info,
+                                        const VkAllocationCallbacks *allocator, VkDescriptorPool *pool)
+  {
+    made++;
+    return real_create(device, info, allocator, pool);
+  }
+  static VkResult VKAPI_PTR reset_pool(VkDevice device, VkDescriptorPool pool, VkDescriptorPoolResetFlags flags)
+  {
+    reset++;
+    return real_reset(device, pool, flags);
+  }
+};
+
+/** Also where a pool gives more sets than it is made for. */
+TEST_F(VulkanFailure, SetsOfDescriptorsAreUsedAgain)
+{
+  CountedPools::real_create = std::exchange(context->vk.vkCreateDescriptorPool, &CountedPools::create_pool);
+  CountedPools::real_reset = std::exchange(context->vk.vkResetDescriptorPool, &CountedPools::reset_pool);
+  CountedPools::made = CountedPools::reset = 0;
+  const Texture picture = device->create_texture({.name = "p", .format = Format::RGBA32F, .width = 2, .height = 2});
+  const Texture texel = device->create_texture({.name = "t", .format = Format::RGBA32F});
+  const Framebuffer framebuffer = device->create_framebuffer({"p", {{&picture}}, {}});
+  const Sampler sampler = device->create_sampler({.name = "nearest"});
+  const Shader shader = test::make_shader(*device, "lookup", test::CLIP_SPACE_VERT, R"(
+layout(binding = 16) uniform sampler2D texel;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = texelFetch(texel, ivec2(0), 0);
+})");
+  const Batch full = test::full_triangle(*device, 0.5F);
+  CommandList list;
+  list.begin_pass("p", framebuffer, {});
+  list.set_shader(shader.id());
+  list.set_state(State::WriteColor);
+  constexpr int draw_count = 64;
+  for (int i = 0; i < draw_count; i++) {
+    list.bind_texture(16, texel.id(), sampler.id());
+    test::append_draw(list, full);
+  }
+  list.end_pass();
+  constexpr int list_count = 20;
+  for (int i = 0; i < list_count; i++) {
+    device->submit(list);
+    device->finish();
+  }
+  EXPECT_LE(CountedPools::made, 2);
+  // A pool has at most 128 sets.
+  EXPECT_GE(CountedPools::made + CountedPools::reset, draw_count * list_count / 128);
+}
+
 /** Barriers, of which one changes layouts, but orders nothing. */
 struct WeakBarrier {
   static inline PFN_vkCmdPipelineBarrier2 real = nullptr;

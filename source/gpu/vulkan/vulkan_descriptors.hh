@@ -24,6 +24,7 @@ class VulkanDescriptors {
     VkDescriptorPool handle = VK_NULL_HANDLE;
     /** The last submission that uses its sets. */
     std::uint64_t number = 0;
+    std::uint32_t set_count = 0;
   };
   void add_pool();
 
