@@ -306,9 +306,10 @@ float imported_intensity(const GltfBuilder &builder, gltf::LampUnits units)
 
 TEST(GltfLampUnits, FilesThatWereExportedUnitlessAreNamedAndConverted)
 {
-  // 100 W of Blender are 8 W/sr, and 0.28 W/(sr m²) of a white surface at 3 m.
+  // 100 W of Blender are 8 W/sr, and 0.28 W/(sr m²) of a white surface at 3 m. 700 W/sr at 3 m are as bright as 1 kW at
+  // 1 m.
   for (const auto &[type, raw] :
-       {std::pair("point", 100.0 / (4.0 * 3.14159265)), {"spot", 8.0}, {"directional", 3.0}}) {
+       {std::pair("point", 100.0 / (4.0 * 3.14159265)), {"point", 700.0}, {"spot", 8.0}, {"directional", 3.0}}) {
     const GltfBuilder unitless = lit_triangle(type, raw);
     const std::string message = "the file was probably exported unitless";
     EXPECT_WARNING(import(unitless), message);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_node_tree.hh"
 
-#include "internal/gltf_report.hh"
-
 #include <algorithm>
 #include <string>
 
@@ -48,7 +46,7 @@ static std::vector<int> parents(const Model &model)
   return parent;
 }
 
-std::vector<int> scene_roots(const Model &model)
+std::vector<int> scene_roots(const Model &model, Warnings &warnings)
 {
   const std::vector<int> parent = parents(model);
   std::vector<int> roots;
@@ -61,17 +59,32 @@ std::vector<int> scene_roots(const Model &model)
     }
     return roots;
   }
-  roots = source->roots;
   std::vector<bool> is_listed(parent.size(), false);
-  for (const int root : roots) {
-    if (parent[root] >= 0) {
-      throw Fault(label_of(model, root),
-                  "is a root of the scene, but also a child of " + label_of(model, parent[root]));
+  for (const int node : source->roots) {
+    is_listed[node] = true;
+  }
+  // Exporters of Unity list a child without its parent.
+  const auto is_below_listed = [&](int node) {
+    do {
+      node = parent[node];
+    } while (node >= 0 && !is_listed[node]);
+    return node >= 0;
+  };
+  std::vector<bool> is_added(parent.size(), false);
+  for (const int node : source->roots) {
+    const bool is_below = is_below_listed(node);
+    if (is_added[node]) {
+      warnings.add(label_of(model, node), "is twice a root of the scene: it is drawn once");
     }
-    if (is_listed[root]) {
-      throw Fault(label_of(model, root), "is twice a root of the scene");
+    else if (parent[node] >= 0) {
+      warnings.add(label_of(model, node), "is a root of the scene, but also a child of " +
+                                              label_of(model, parent[node]) + ": it is drawn " +
+                                              (is_below ? "below that node alone" : "without that node"));
     }
-    is_listed[root] = true;
+    if (!is_below && !is_added[node]) {
+      roots.push_back(node);
+    }
+    is_added[node] = true;
   }
   return roots;
 }
