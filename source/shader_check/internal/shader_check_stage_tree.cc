@@ -128,8 +128,11 @@ void add_members(const TType &type, const std::string &prefix, const std::string
   for (const glslang::TTypeLoc &entry : *type.getStruct()) {
     const std::string name = prefix + text_of(entry.type->getFieldName());
     if (entry.type->isStruct()) {
-      add_members(*entry.type, name + (entry.type->isArray() ? "[0]." : "."), text_of(entry.type->getTypeName()),
-                  is_std140, lines, block, findings);
+      std::string first = name;
+      for (int i = 0; entry.type->isArray() && i < entry.type->getArraySizes()->getNumDims(); i++) {
+        first += "[0]";
+      }
+      add_members(*entry.type, first + ".", text_of(entry.type->getTypeName()), is_std140, lines, block, findings);
       continue;
     }
     block.members.push_back({name, structure, position_of(entry.loc, lines)});
