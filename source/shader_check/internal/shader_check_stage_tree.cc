@@ -26,10 +26,19 @@ class StageReader : public TIntermTraverser {
   std::map<std::string, std::set<std::string>> calls;
   std::set<long long> used;
 
-  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
+  StageReader() : TIntermTraverser(true, false, true) {}
+
+  bool visitAggregate(TVisit visit, TIntermAggregate *aggregate) override
   {
     if (aggregate->getOp() == glslang::EOpLinkerObjects) {
       return false;
+    }
+    if (visit == glslang::EvPostVisit) {
+      // Initializers of globals stand between functions.
+      if (aggregate->getOp() == glslang::EOpFunction) {
+        function_.clear();
+      }
+      return true;
     }
     if (aggregate->getOp() == glslang::EOpFunction) {
       functions.push_back(aggregate);
@@ -46,6 +55,7 @@ class StageReader : public TIntermTraverser {
   }
 
  private:
+  /** Empty: outside of functions. */
   std::string function_;
 };
 
