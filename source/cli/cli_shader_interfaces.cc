@@ -3,7 +3,7 @@
 
 #include "shader_check_files.hh"
 
-#include <fmt/ranges.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
@@ -44,31 +44,6 @@ std::vector<NamedInterface> file_interfaces(const InterfaceArguments &arguments)
         {program.name, program.defines, shader_check::program_interface(program, folder.files(), options)});
   }
   return interfaces;
-}
-
-std::vector<std::string_view> names_of(const std::vector<shader_check::Stage> &stages)
-{
-  std::vector<std::string_view> names;
-  for (const shader_check::Stage stage : stages) {
-    names.push_back(shader_check::to_string(stage));
-  }
-  return names;
-}
-
-void print_binding(const shader_check::ProgramBinding &binding)
-{
-  fmt::print("{} {}'{}'{}, in {}", to_string(binding.kind), binding.type.empty() ? "" : binding.type + " ",
-             binding.name, binding.slot < 0 ? "" : fmt::format(", set {}, slot {}", binding.set, binding.slot),
-             fmt::join(names_of(binding.stages), ", "));
-  fmt::print("{}\n",
-             binding.members.empty() ? "" : fmt::format("; {} bytes; offset, size, member:", binding.size_bytes));
-  for (const shader_check::ProgramBinding::Member &member : binding.members) {
-    fmt::print("  {:>6} {:>6}  {} {}", member.offset_bytes, member.size_bytes, member.type, member.name);
-    for (const shader_check::ProgramBinding::Array &array : member.arrays) {
-      fmt::print("{}{}", &array == member.arrays.data() ? ", stride " : ", ", array.stride_bytes);
-    }
-    fmt::print("\n");
-  }
 }
 
 }  // namespace gnomon::cli

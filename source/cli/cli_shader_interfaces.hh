@@ -29,9 +29,4 @@ struct NamedInterface {
 /** The programs of the files: those of one stem are one. \throws UsageError, gpu::Error if one does not compile */
 [[nodiscard]] std::vector<NamedInterface> file_interfaces(const InterfaceArguments &arguments);
 
-[[nodiscard]] std::vector<std::string_view> names_of(const std::vector<shader_check::Stage> &stages);
-
-/** A block with its members, a texture or an image, as text. */
-void print_binding(const shader_check::ProgramBinding &binding);
-
 }  // namespace gnomon::cli

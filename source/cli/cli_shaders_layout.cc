@@ -161,8 +161,8 @@ std::string assertions_of(const HostStruct &host, const ProgramBinding &block, s
                           fmt::format("'{}' of block '{}' in {}", path, block.name, program));
     }
   };
-  std::uint32_t begin = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t end = 0;
+  // Where the struct begins in the block.
+  std::uint32_t begin = host.member.empty() ? 0 : std::numeric_limits<std::uint32_t>::max();
   for (const ProgramBinding::Member &member : block.members) {
     if (!path_within(member.name, host.member).empty()) {
       begin = std::min(begin, member.offset_bytes);
@@ -192,15 +192,15 @@ std::string assertions_of(const HostStruct &host, const ProgramBinding &block, s
     }
     std::size_t place = 0;
     for (const ProgramBinding::Array &array : inner) {
-      place = element.find(']', place) + 1;
-      add(fmt::format("sizeof({}{}) == {}", object, element.substr(0, place), array.stride_bytes), member.name);
+      place = element.find('[', place);
+      const std::string whole = object + element.substr(0, place);
+      add(fmt::format("sizeof({}) >= {}", whole, array.count * array.stride_bytes), member.name);
+      add(fmt::format("sizeof({}[0]) == {}", whole, array.stride_bytes), member.name);
+      place++;
     }
-    end = std::max(end, member.offset_bytes + member.size_bytes - begin);
   }
-  if (end > 0) {
-    add(stride > 0 ? fmt::format("sizeof({}) == {}", host.name, stride)
-                   : fmt::format("sizeof({}) >= {}", host.name, end),
-        host.member.empty() ? block.name : host.member);
+  if (stride > 0) {
+    add(fmt::format("sizeof({}) == {}", host.name, stride), host.member);
   }
   return text;
 }
@@ -240,16 +240,6 @@ std::string assertions_of(const std::vector<std::string> &structs, const std::ve
   return head + "#include <cstddef>\n#include <utility>\n" + text;
 }
 
-void print_blocks(const NamedInterface &program)
-{
-  fmt::print("{}:\n", program.name);
-  for (const ProgramBinding &binding : program.interface.bindings) {
-    if (!binding.members.empty()) {
-      print_binding(binding);
-    }
-  }
-}
-
 struct LayoutArguments {
   InterfaceArguments source;
   std::vector<std::string> structs;
@@ -266,16 +256,11 @@ Status layout(const LayoutArguments &arguments)
     }
     return engine_layout(arguments.shaders);
   }
-  if (!arguments.shaders.empty()) {
-    throw UsageError("--shaders is for the engine's shaders, without files");
+  if (arguments.structs.empty() || !arguments.shaders.empty()) {
+    throw UsageError(
+        "files need --struct; 'gnomon shaders reflect' prints their blocks. --shaders is for the engine's");
   }
-  const std::vector<NamedInterface> programs = file_interfaces(source);
-  if (arguments.structs.empty()) {
-    std::ranges::for_each(programs, print_blocks);
-  }
-  else {
-    fmt::print("{}", assertions_of(arguments.structs, programs));
-  }
+  fmt::print("{}", assertions_of(arguments.structs, file_interfaces(source)));
   return Status::Done;
 }
 
@@ -284,7 +269,7 @@ Status layout(const LayoutArguments &arguments)
 void add_shaders_layout(CLI::App &shaders, Status &status)
 {
   auto a = std::make_shared<LayoutArguments>();
-  CLI::App *command = shaders.add_subcommand("layout", "Layout of blocks in GLSL, and in C++");
+  CLI::App *command = shaders.add_subcommand("layout", "Compare the layout of blocks in GLSL and in C++");
   command->add_option(
       "files", a->source.files,
       "Shaders, of which those of one stem are a program (default: the engine's blocks in C++ and GLSL)");

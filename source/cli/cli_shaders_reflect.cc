@@ -59,6 +59,15 @@ NamedInterface engine_interface(const ReflectArguments &arguments)
   return {desc.name, desc.defines, shader_check::program_interface(desc, files.files())};
 }
 
+std::vector<std::string_view> names_of(const std::vector<shader_check::Stage> &stages)
+{
+  std::vector<std::string_view> names;
+  for (const shader_check::Stage stage : stages) {
+    names.push_back(shader_check::to_string(stage));
+  }
+  return names;
+}
+
 nlohmann::json to_json(const std::vector<shader_check::StageVariable> &variables)
 {
   nlohmann::json list = nlohmann::json::array();
@@ -106,6 +115,22 @@ void print_variables(std::string_view kind, const std::vector<shader_check::Stag
 {
   for (const shader_check::StageVariable &variable : variables) {
     fmt::print("{} {} '{}', location {}\n", kind, variable.type, variable.name, variable.location);
+  }
+}
+
+void print_binding(const shader_check::ProgramBinding &binding)
+{
+  fmt::print("{} {}'{}'{}, in {}", to_string(binding.kind), binding.type.empty() ? "" : binding.type + " ",
+             binding.name, binding.slot < 0 ? "" : fmt::format(", set {}, slot {}", binding.set, binding.slot),
+             fmt::join(names_of(binding.stages), ", "));
+  fmt::print("{}\n",
+             binding.members.empty() ? "" : fmt::format("; {} bytes; offset, size, member:", binding.size_bytes));
+  for (const shader_check::ProgramBinding::Member &member : binding.members) {
+    fmt::print("  {:>6} {:>6}  {} {}", member.offset_bytes, member.size_bytes, member.type, member.name);
+    for (const shader_check::ProgramBinding::Array &array : member.arrays) {
+      fmt::print("{}{}", &array == member.arrays.data() ? ", stride " : ", ", array.stride_bytes);
+    }
+    fmt::print("\n");
   }
 }
 

@@ -428,7 +428,9 @@ TEST_F(ShadersTest, LayoutOfFilesIsThatOfStructsThatTheCompilerLaysOut)
   const Finished equal = compile(header);
   EXPECT_EQ(equal.status, 0) << equal.err;
   for (const auto &[from, to, member] : {std::tuple("float radius; ", "", "lights[0][0].radius"),
-                                         {"lights[4][2]", "lights[3][2]", "count"},
+                                         {"lights[4][2]", "lights[3][2]", "lights[0][0].position"},
+                                         {"weights[3]", "weights[2]", "weights"},
+                                         {"v[2]", "v[2], w[4]", "weights"},
                                          {"basis[3][4]", "basis[3][3]", "lights[0][0].basis"},
                                          {"alignas(16) ", "", "weights"},
                                          {"int count", "char count", "count"},
@@ -439,19 +441,35 @@ TEST_F(ShadersTest, LayoutOfFilesIsThatOfStructsThatTheCompilerLaysOut)
     EXPECT_NE(finished.status, 0) << to;
     EXPECT_NE(finished.err.find(fmt::format("'{}' of block", member)), std::string::npos) << finished.err;
   }
-  const Finished text = run("shaders layout m.frag");
-  EXPECT_NE(text.out.find("vec2[2][3] lights[0][0].cells, stride "), std::string::npos) << text.out;
   for (const auto &[arguments, status, message] :
        {std::tuple("m.frag --struct m.hh:Other", 1, "no shader uses a block 'Other'; used are: Hits, Scene"),
         {"m.frag --struct m.hh:Other=Scene.view", 1, "block 'Scene' has no struct 'view'"},
         {"m.frag --struct m.hh", 2, "must be HEADER:NAME"},
         {"--struct m.hh:Scene", 2, "are for files"},
-        {"m.frag --shaders tree", 2, "without files"},
-        {"none.frag", 1, "none.frag"}}) {
+        {"m.frag", 2, "files need --struct"},
+        {"none.frag --struct m.hh:Scene", 1, "none.frag"}}) {
     const Finished bad = run(fmt::format("shaders layout {}", arguments));
     EXPECT_EQ(bad.status, status) << arguments;
     EXPECT_NE(bad.err.find(message), std::string::npos) << bad.err;
   }
+  // Arrays of structs at the end of a block, and blocks whose first member has an offset.
+  write("m.frag",
+        "#version 450\nstruct Light { vec4 a; };\n"
+        "layout(push_constant) uniform Draw { layout(offset = 16) vec4 color; Light lights[2]; } d;\n"
+        "layout(location = 0) out vec4 color; void main() { color = d.color * d.lights[1].a; }\n");
+  for (const auto &[text, is_equal] :
+       {std::pair(
+            "struct V { float v[4]; }; struct Light { V a; }; struct Draw { V start; V color; Light lights[2]; };",
+            true),
+        {"struct V { float v[4]; }; struct Light { V a; }; struct Draw { V start; V color; Light lights[1]; };", false},
+        {"struct V { float v[4]; }; struct Light { V a; }; struct Draw { V color; Light lights[3]; };", false}}) {
+    write("m.hh", text);
+    const Finished source = run("shaders layout m.frag --struct m.hh:Draw");
+    ASSERT_EQ(source.status, 0) << source.err;
+    write("layout.cc", source.out);
+    EXPECT_EQ(run("-std=c++20 -fsyntax-only layout.cc", "c++").status == 0, is_equal) << text;
+  }
+  EXPECT_NE(run("shaders reflect m.frag").out.find("vec4 lights[0].a, stride 16\n"), std::string::npos);
 }
 
 TEST_F(ShadersTest, ReflectOfFilesReadsOpenGlAndNamesErrors)
