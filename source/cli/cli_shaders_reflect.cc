@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shaders.hh"
 
+#include "cli_shader_interfaces.hh"
 #include "cli_shader_programs.hh"
-
-#include "shader_check_program.hh"
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -19,12 +18,9 @@ namespace fs = std::filesystem;
 namespace {
 
 struct ReflectArguments {
-  /** One program of an engine, or files. */
-  std::vector<std::string> programs;
+  /** Its `files`: one program of an engine, or files. */
+  InterfaceArguments source;
   std::optional<std::string> variant;
-  std::vector<std::string> include_folders;
-  std::vector<std::string> defines;
-  std::string target = "auto";
   std::string format = "text";
   std::string shaders;
 };
@@ -32,7 +28,7 @@ struct ReflectArguments {
 /** The variant with these defines, in any order; by default the one with most defines. */
 gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
 {
-  const std::string &program = arguments.programs.front();
+  const std::string &program = arguments.source.files.front();
   const auto sorted = [](const std::string &text) {
     std::istringstream stream(text);
     std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
@@ -56,44 +52,11 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
   return found->desc;
 }
 
-/** A program with the text that tells it from others. */
-struct NamedInterface {
-  std::string name;
-  std::vector<std::string> defines;
-  shader_check::ProgramInterface interface;
-};
-
 NamedInterface engine_interface(const ReflectArguments &arguments)
 {
   const EngineFiles files(arguments.shaders);
   const gpu::ShaderDesc desc = find_variant(arguments);
   return {desc.name, desc.defines, shader_check::program_interface(desc, files.files())};
-}
-
-std::vector<NamedInterface> file_interfaces(const ReflectArguments &arguments)
-{
-  std::vector<shader_check::Program> programs;
-  for (const std::string &file : arguments.programs) {
-    const std::optional<shader_check::Stage> stage = stage_of(file);
-    if (!stage) {
-      throw UsageError(fmt::format("{}: {}", file, unknown_stage(file)));
-    }
-    add_file(programs, *stage, file);
-  }
-  shader_check::ProgramOptions options;
-  options.include_folders = arguments.include_folders;
-  if (arguments.target != "auto") {
-    options.target = target_of(arguments.target);
-  }
-  shader_check::FolderFiles folder{fs::path()};
-  std::vector<NamedInterface> interfaces;
-  for (shader_check::Program &program : programs) {
-    add_stages_between(program);
-    std::ranges::transform(arguments.defines, std::back_inserter(program.defines), define_of);
-    interfaces.push_back(
-        {program.name, program.defines, shader_check::program_interface(program, folder.files(), options)});
-  }
-  return interfaces;
 }
 
 std::vector<std::string_view> names_of(const std::vector<shader_check::Stage> &stages)
@@ -120,8 +83,15 @@ nlohmann::json to_json(const NamedInterface &program)
   for (const shader_check::ProgramBinding &binding : program.interface.bindings) {
     nlohmann::json members = nlohmann::json::array();
     for (const shader_check::ProgramBinding::Member &member : binding.members) {
-      members.push_back(
-          {{"name", member.name}, {"type", member.type}, {"offset", member.offset_bytes}, {"size", member.size_bytes}});
+      nlohmann::json arrays = nlohmann::json::array();
+      for (const shader_check::ProgramBinding::Array &array : member.arrays) {
+        arrays.push_back({{"count", array.count}, {"stride", array.stride_bytes}});
+      }
+      members.push_back({{"name", member.name},
+                         {"type", member.type},
+                         {"offset", member.offset_bytes},
+                         {"size", member.size_bytes},
+                         {"arrays", std::move(arrays)}});
     }
     bindings.push_back({{"kind", to_string(binding.kind)},
                         {"name", binding.name},
@@ -148,6 +118,22 @@ void print_variables(std::string_view kind, const std::vector<shader_check::Stag
   }
 }
 
+void print_binding(const shader_check::ProgramBinding &binding)
+{
+  fmt::print("{} {}'{}'{}, in {}", to_string(binding.kind), binding.type.empty() ? "" : binding.type + " ",
+             binding.name, binding.slot < 0 ? "" : fmt::format(", set {}, slot {}", binding.set, binding.slot),
+             fmt::join(names_of(binding.stages), ", "));
+  fmt::print("{}\n",
+             binding.members.empty() ? "" : fmt::format("; {} bytes; offset, size, member:", binding.size_bytes));
+  for (const shader_check::ProgramBinding::Member &member : binding.members) {
+    fmt::print("  {:>6} {:>6}  {} {}", member.offset_bytes, member.size_bytes, member.type, member.name);
+    for (const shader_check::ProgramBinding::Array &array : member.arrays) {
+      fmt::print("{}{}", &array == member.arrays.data() ? ", stride " : ", ", array.stride_bytes);
+    }
+    fmt::print("\n");
+  }
+}
+
 void print_text(const NamedInterface &program)
 {
   fmt::print("{}", program.name);
@@ -157,16 +143,7 @@ void print_text(const NamedInterface &program)
   fmt::print(": {} for {}\n", fmt::join(names_of(program.interface.stages), ", "), to_string(program.interface.target));
   print_variables("input", program.interface.inputs);
   print_variables("output", program.interface.outputs);
-  for (const shader_check::ProgramBinding &binding : program.interface.bindings) {
-    fmt::print("{} {}'{}'{}, in {}", to_string(binding.kind), binding.type.empty() ? "" : binding.type + " ",
-               binding.name, binding.slot < 0 ? "" : fmt::format(", set {}, slot {}", binding.set, binding.slot),
-               fmt::join(names_of(binding.stages), ", "));
-    fmt::print("{}\n",
-               binding.members.empty() ? "" : fmt::format("; {} bytes; offset, size, member:", binding.size_bytes));
-    for (const shader_check::ProgramBinding::Member &member : binding.members) {
-      fmt::print("  {:>6} {:>6}  {} {}\n", member.offset_bytes, member.size_bytes, member.type, member.name);
-    }
-  }
+  std::ranges::for_each(program.interface.bindings, print_binding);
 }
 
 /** Programs of engines have no endings and are no files. */
@@ -177,14 +154,15 @@ bool is_file(const std::string &program)
 
 void reflect(const ReflectArguments &arguments)
 {
-  const bool is_engine = arguments.programs.size() == 1 && !is_file(arguments.programs.front());
-  if (is_engine ? !arguments.defines.empty() || !arguments.include_folders.empty() || arguments.target != "auto"
+  const bool is_engine = arguments.source.files.size() == 1 && !is_file(arguments.source.files.front());
+  if (is_engine ? !arguments.source.defines.empty() || !arguments.source.include_folders.empty() ||
+                      arguments.source.target != "auto"
                 : arguments.variant || !arguments.shaders.empty()) {
     throw UsageError(is_engine ? "-I, -D and --target are for files"
                                : "--variant and --shaders are for programs of engines");
   }
   const std::vector<NamedInterface> programs =
-      is_engine ? std::vector{engine_interface(arguments)} : file_interfaces(arguments);
+      is_engine ? std::vector{engine_interface(arguments)} : file_interfaces(arguments.source);
   if (arguments.format == "json") {
     nlohmann::json document = nlohmann::json::array();
     for (const NamedInterface &program : programs) {
@@ -203,14 +181,11 @@ void add_shaders_reflect(CLI::App &shaders, Status &status)
   CLI::App *command = shaders.add_subcommand("reflect", "Blocks, textures, inputs and outputs of programs");
   auto a = std::make_shared<ReflectArguments>();
   command
-      ->add_option("programs", a->programs,
+      ->add_option("programs", a->source.files,
                    "Name from 'shaders list', or files, of which those of one stem are a program")
       ->required();
   command->add_option("--variant", a->variant, "Defines of the variant (default: the variant with most)");
-  add_source_options(*command, a->include_folders, a->defines);
-  command->add_option("--target", a->target, "Target of files, as for check")
-      ->capture_default_str()
-      ->check(CLI::IsMember(target_names()));
+  add_interface_options(*command, a->source);
   command->add_option("--format", a->format, "text, json (files: a list)")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));

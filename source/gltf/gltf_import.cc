@@ -116,7 +116,7 @@ class Importer {
   Scene import()
   {
     warn_about_file();
-    const std::vector<int> roots = scene_roots(file_.model);
+    const std::vector<int> roots = scene_roots(file_.model, warnings_);
     progress_.begin_phase(file_.model.nodes.size() + primitive_count(file_.model), 0.7F);
     things_.nodes.resize(file_.model.nodes.size());
     scene_.reserve_nodes(file_.model.nodes.size());

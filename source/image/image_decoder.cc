@@ -48,7 +48,11 @@ static std::unique_ptr<Decoder> open_format(std::span<const unsigned char> file)
     case Format::Webp: return open_webp(file);
     case Format::None: break;
   }
-  throw Error(file.empty() ? "is empty" : "is none of PNG, JPEG and WebP");
+  using namespace std::string_view_literals;
+  throw Error(file.empty() ? "is empty"
+              : begins_with(file, "\xABKTX 20\xBB\r\n\x1A\n"sv)
+                  ? "is KTX2, which is not read: only PNG, JPEG and WebP are"
+                  : "is none of PNG, JPEG and WebP");
 }
 
 std::unique_ptr<Decoder> open_decoder(std::span<const unsigned char> file)

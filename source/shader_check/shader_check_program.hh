@@ -17,6 +17,11 @@ struct StageVariable {
 /** A block, texture or image of a program. */
 struct ProgramBinding {
   enum class Kind : std::uint8_t { UniformBlock, StorageBlock, Texture, Image, PushConstants };
+  struct Array {
+    /** 0: an array without a size. */
+    std::uint32_t count = 0;
+    std::uint32_t stride_bytes = 0;
+  };
   struct Member {
     /** Path in the block, such as `lights[0].color`. Of an array of structs, the first element stands for all. */
     std::string name;
@@ -24,6 +29,8 @@ struct ProgramBinding {
     std::string type;
     std::uint32_t offset_bytes = 0;
     std::uint32_t size_bytes = 0;
+    /** The arrays of the path and of the type, the outermost first. */
+    std::vector<Array> arrays;
   };
   Kind kind = Kind::UniformBlock;
   /** Of a block, the name of the block. */

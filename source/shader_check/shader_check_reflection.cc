@@ -231,7 +231,8 @@ void add_bindings(const std::vector<Declaration> &declarations, ProgramBinding::
       binding.type = type_name(declaration.type);
     }
     for (const BlockMember &member : declaration.members) {
-      binding.members.push_back({member.name, type_name(member.type), member.offset_bytes, member.size_bytes});
+      binding.members.push_back(
+          {member.name, type_name(member.type), member.offset_bytes, member.size_bytes, member.arrays});
     }
     bindings.push_back(std::move(binding));
   }

@@ -302,8 +302,11 @@ TEST_F(ShadersTest, ReflectPrintsBlocksTexturesAndStageVariables)
   const nlohmann::json view = find("bindings", "view_block");
   EXPECT_EQ(view["kind"], "uniform");
   EXPECT_EQ(view["size"], 160);
-  EXPECT_EQ(view["members"][1],
-            nlohmann::json({{"name", "view.position_ws"}, {"type", "vec3"}, {"offset", 64}, {"size", 12}}));
+  EXPECT_EQ(view["members"][1], nlohmann::json({{"name", "view.position_ws"},
+                                                {"type", "vec3"},
+                                                {"offset", 64},
+                                                {"size", 12},
+                                                {"arrays", nlohmann::json::array()}}));
   EXPECT_EQ(find("bindings", "shadow_maps")["kind"], "texture");
   EXPECT_EQ(find("inputs", "normal")["type"], "vec3");
   EXPECT_EQ(find("inputs", "draw_instance")["type"], "uvec2");
@@ -387,11 +390,86 @@ TEST_F(ShadersTest, ReflectOfFilesAgreesWithSpirvCross)
   EXPECT_EQ(entry_of(program["bindings"], "cells")["type"], "uimage3D");
   const nlohmann::json pose = entry_of(program["bindings"], "Pose")["members"];
   // By std140: a bone is three columns of vec4 and a vec3 in a row of 16 bytes.
-  EXPECT_EQ(entry_of(pose, "bones[0].scale"),
-            nlohmann::json({{"name", "bones[0].scale"}, {"type", "vec3"}, {"offset", 48}, {"size", 12}}));
+  EXPECT_EQ(entry_of(pose, "bones[0].scale"), nlohmann::json({{"name", "bones[0].scale"},
+                                                              {"type", "vec3"},
+                                                              {"offset", 48},
+                                                              {"size", 12},
+                                                              {"arrays", {{{"count", 2}, {"stride", 64}}}}}));
   EXPECT_EQ(entry_of(pose, "weights")["offset"], 128);
   EXPECT_EQ(entry_of(program["inputs"], "joints"),
             nlohmann::json({{"name", "joints"}, {"type", "uvec4"}, {"location", 3}}));
+}
+
+TEST_F(ShadersTest, LayoutOfFilesIsThatOfStructsThatTheCompilerLaysOut)
+{
+  write("m.frag",
+        "#version 450\n"
+        "struct Light { vec3 position; float radius; mat3 basis; vec2 cells[2][3]; };\n"
+        "layout(std140, binding = 1) uniform Scene { mat4 view; Light lights[4][2]; int count; float weights[3]; } s;\n"
+        "layout(std430, binding = 2) buffer Hits { uint count; Light places[]; } h;\n"
+        "layout(location = 0) out vec4 color;\n"
+        "void main() { color = s.view[0] * s.lights[s.count][1].radius * s.weights[1] * h.places[h.count].radius; }\n");
+  // `Rows` is 16 bytes for each element, as std140 has them; std430 packs vec2 into 8.
+  const std::string header =
+      "struct Rows { alignas(16) float v[2]; };\n"
+      "struct Light { float position[3]; float radius; float basis[3][4]; Rows cells[2][3]; };\n"
+      "namespace app { struct Scene { float view[16]; Light lights[4][2]; int count; Rows weights[3]; }; }\n"
+      "struct Hits { unsigned count; };\n"
+      "struct Place { float position[3]; float radius; float basis[3][4]; float cells[2][3][2]; };\n";
+  const std::string structs =
+      " --struct m.hh:app::Scene --struct m.hh:Light=Scene.lights --struct m.hh:Hits --struct m.hh:Place=Hits.places";
+  const auto compile = [&](const std::string &text) {
+    write("m.hh", text);
+    const Finished source = run("shaders layout m.frag" + structs);
+    EXPECT_EQ(source.status, 0) << source.err;
+    write("layout.cc", source.out);
+    return run("-std=c++20 -fsyntax-only layout.cc", "c++");
+  };
+  const Finished equal = compile(header);
+  EXPECT_EQ(equal.status, 0) << equal.err;
+  for (const auto &[from, to, member] : {std::tuple("float radius; ", "", "lights[0][0].radius"),
+                                         {"lights[4][2]", "lights[3][2]", "lights[0][0].position"},
+                                         {"weights[3]", "weights[2]", "weights"},
+                                         {"v[2]", "v[2], w[4]", "weights"},
+                                         {"basis[3][4]", "basis[3][3]", "lights[0][0].basis"},
+                                         {"alignas(16) ", "", "weights"},
+                                         {"int count", "char count", "count"},
+                                         {"cells[2][3][2]", "cells[2][3][4]", "places"}}) {
+    std::string changed = header;
+    changed.replace(changed.find(from), std::string(from).size(), to);
+    const Finished finished = compile(changed);
+    EXPECT_NE(finished.status, 0) << to;
+    EXPECT_NE(finished.err.find(fmt::format("'{}' of block", member)), std::string::npos) << finished.err;
+  }
+  for (const auto &[arguments, status, message] :
+       {std::tuple("m.frag --struct m.hh:Other", 1, "no shader uses a block 'Other'; used are: Hits, Scene"),
+        {"m.frag --struct m.hh:Other=Scene.view", 1, "block 'Scene' has no struct 'view'"},
+        {"m.frag --struct m.hh", 2, "must be HEADER:NAME"},
+        {"--struct m.hh:Scene", 2, "are for files"},
+        {"m.frag", 2, "files need --struct"},
+        {"none.frag --struct m.hh:Scene", 1, "none.frag"}}) {
+    const Finished bad = run(fmt::format("shaders layout {}", arguments));
+    EXPECT_EQ(bad.status, status) << arguments;
+    EXPECT_NE(bad.err.find(message), std::string::npos) << bad.err;
+  }
+  // Arrays of structs at the end of a block, and blocks whose first member has an offset.
+  write("m.frag",
+        "#version 450\nstruct Light { vec4 a; };\n"
+        "layout(push_constant) uniform Draw { layout(offset = 16) vec4 color; Light lights[2]; } d;\n"
+        "layout(location = 0) out vec4 color; void main() { color = d.color * d.lights[1].a; }\n");
+  for (const auto &[text, is_equal] :
+       {std::pair(
+            "struct V { float v[4]; }; struct Light { V a; }; struct Draw { V start; V color; Light lights[2]; };",
+            true),
+        {"struct V { float v[4]; }; struct Light { V a; }; struct Draw { V start; V color; Light lights[1]; };", false},
+        {"struct V { float v[4]; }; struct Light { V a; }; struct Draw { V color; Light lights[3]; };", false}}) {
+    write("m.hh", text);
+    const Finished source = run("shaders layout m.frag --struct m.hh:Draw");
+    ASSERT_EQ(source.status, 0) << source.err;
+    write("layout.cc", source.out);
+    EXPECT_EQ(run("-std=c++20 -fsyntax-only layout.cc", "c++").status == 0, is_equal) << text;
+  }
+  EXPECT_NE(run("shaders reflect m.frag").out.find("vec4 lights[0].a, stride 16\n"), std::string::npos);
 }
 
 TEST_F(ShadersTest, ReflectOfFilesReadsOpenGlAndNamesErrors)

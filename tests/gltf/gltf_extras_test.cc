@@ -306,7 +306,8 @@ float imported_intensity(const GltfBuilder &builder, gltf::LampUnits units)
 
 TEST(GltfLampUnits, FilesThatWereExportedUnitlessAreNamedAndConverted)
 {
-  // 100 W of Blender are 8 W/sr, and 0.28 W/(sr m²) of a white surface at 3 m.
+  // 100 W of Blender are 8 W/sr, and 0.28 W/(sr m²) of a white surface at 3 m. 700 W/sr at 3 m are as bright as 1 kW at
+  // 1 m.
   for (const auto &[type, raw] :
        {std::pair("point", 100.0 / (4.0 * 3.14159265)), {"spot", 8.0}, {"directional", 3.0}}) {
     const GltfBuilder unitless = lit_triangle(type, raw);
@@ -328,6 +329,16 @@ TEST(GltfLampUnits, FilesThatWereExportedUnitlessAreNamedAndConverted)
     EXPECT_NO_WARNING(import(with_world), message);
     EXPECT_NO_WARNING(import(lit_triangle(type, 0.0)), message);
   }
+}
+
+TEST(GltfLampUnits, DarkFilesMayHaveEitherUnit)
+{
+  // 700 cd at 3 m are as bright as 1 kW of Blender, exported unitless, or as a right bulb of 800 lm, at about 1 m.
+  const GltfBuilder dark = lit_triangle("point", 700.0);
+  EXPECT_WARNING(import(dark), "may have been exported unitless; --lamp-units raw reads");
+  EXPECT_NEAR(imported_intensity(dark, gltf::LampUnits::Auto), 700.0 / 683.0, 1e-3);
+  EXPECT_NEAR(imported_intensity(dark, gltf::LampUnits::Raw), 700.0, 1e-3);
+  EXPECT_NO_WARNING(import(lit_triangle("point", 2000.0)), "exported unitless");
 }
 
 TEST(GltfWorld, TexelsOfItsPictureThatAreNoRadiancesAreClamped)

@@ -242,6 +242,8 @@ TEST(GltfImage, OneThatIsUsedTwiceIsDecodedOnce)
 TEST(GltfImage, UnreadableImagesAreNamedAndLeaveTheFactor)
 {
   EXPECT_HAS(reason({{"name", "leaf"}, {"uri", data_uri({1, 2, 3})}}), "image 'leaf': is none of PNG, JPEG and WebP");
+  EXPECT_HAS(reason({{"uri", data_uri({0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'})}}),
+             "image 0: is KTX2, which is not read: only PNG, JPEG and WebP are");
   EXPECT_HAS(reason({{"uri", "data:image/png;base64,"}}), "image 0: is empty");
   EXPECT_HAS(reason({{"uri", "data:image/png,abc"}}), "image 0: is none of PNG, JPEG and WebP");
   EXPECT_HAS(reason({{"uri", "absent.png"}}), "image 0 'absent.png': there is no such file");

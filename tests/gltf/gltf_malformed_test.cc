@@ -205,11 +205,39 @@ TEST(GltfNodes, CyclesAndSecondParentsAreErrors)
                d["nodes"].push_back({{"name", "b"}, {"children", {0}}});
              }),
              "node 'thing': has two parents, node 'a' and node 'b'");
-  EXPECT_HAS(error_after([](json &d) {
-               d["nodes"].push_back({{"name", "a"}, {"children", {0}}});
-             }),
-             "node 'thing': is a root of the scene, but also a child of node 'a'");
-  EXPECT_HAS(error_after([](json &d) { d["scenes"][0]["nodes"] = {0, 0}; }), "node 'thing': is twice a root");
+}
+
+TEST(GltfNodes, OfASceneAreDrawnOnceWhereItListsThemTwiceOrWithTheirParents)
+{
+  const auto nodes_after = [](const std::function<void(json &)> &change, const std::string &warning) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["nodes"].push_back({{"name", "a"}, {"children", {0}}, {"translation", {1, 2, 3}}});
+    builder.document["nodes"].push_back({{"name", "b"}, {"children", {1}}});
+    change(builder.document);
+    const Scene scene = import(builder);
+    EXPECT_WARNING(scene, "node 'thing': is " + warning);
+    EXPECT_EQ(scene.objects().size(), 1);
+    return std::pair(scene.nodes().size(), glm::vec3(scene.objects().begin()->world_from_object[3]));
+  };
+  using Result = std::pair<std::size_t, glm::vec3>;
+  // With the camera and the lamp that are added.
+  const Scene plain = import(triangle_scene());
+  const std::size_t count = plain.nodes().size();
+  const glm::vec3 place(plain.objects().begin()->world_from_object[3]);
+  EXPECT_EQ(nodes_after([](json &d) { d["scenes"][0]["nodes"] = {0}; },
+                        "a root of the scene, but also a child of node 'a': it is drawn without that node"),
+            Result(count, place));
+  for (const json &listed : {json{0, 2}, json{2, 0}}) {
+    EXPECT_EQ(nodes_after([&](json &d) { d["scenes"][0]["nodes"] = listed; },
+                          "a root of the scene, but also a child of node 'a': it is drawn below that node alone"),
+              Result(count + 2, place + glm::vec3(1, 2, 3)));
+  }
+  EXPECT_EQ(nodes_after(
+                [](json &d) {
+                  d["scenes"][0]["nodes"] = {0, 0};
+                },
+                "twice a root of the scene"),
+            Result(count, place));
 }
 
 // ---- Accessors ----

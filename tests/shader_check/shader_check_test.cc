@@ -227,6 +227,12 @@ TEST(CheckShader, RecursionIsFoundThroughOtherFunctions)
   expect_contains(messages[1].text, "'a'");
 }
 
+TEST(CheckShader, GlobalsMayBeInitializedByTheFunctionBeforeThem)
+{
+  expect_clean(check_fragment(COLOR + "vec4 twice(vec4 x) { return x + x; }\nvec4 two = twice(vec4(1.0));\n"
+                                      "void main() { color = two; }\n"));
+}
+
 TEST(CheckShader, ArraysInBlocksFillRows)
 {
   const auto block = [&](const std::string &layout, const std::string &member) {

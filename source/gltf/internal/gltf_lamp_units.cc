@@ -24,8 +24,13 @@ using scene::Scene;
 
 namespace {
 
-/** Radiance of a white surface, W/(sr m²), below which a picture without exposure is nearly black. */
-constexpr double dim_radiance = 0.01;
+/**
+ * Radiance of a white surface, W/(sr m²), below which a picture without exposure is dark. Blender's lamp of 1 kW,
+ * exported unitless, gives 0.037 at a distance of 1 m, and a bulb of 800 lm in right units 0.03.
+ */
+constexpr double dim_radiance = 0.05;
+/** Below which it is nearly black. */
+constexpr double black_radiance = 0.01;
 /** Products of lamps and objects beyond which no file is said to look raw, because the search would take too long. */
 constexpr std::size_t pair_count_max = std::size_t(1) << 26U;
 
@@ -92,13 +97,15 @@ void convert_lamps(LampUnits units, const ImportedThings &things, Warnings &warn
     if (!(radiance > 0.0) || radiance >= dim_radiance) {
       return;
     }
-    warnings.add("lamps", "the brightest gives a white surface a radiance of " + text(float(radiance)) +
-                              ", where 1 is white: the file was probably exported unitless; " +
-                              (units == LampUnits::Auto ? "its numbers are read as W/sr and W/m2"
-                                                        : "--lamp-units raw reads its numbers as W/sr and W/m2"));
-  }
-  if (units == LampUnits::Lumen) {
-    return;
+    const bool is_raw = units == LampUnits::Auto && radiance < black_radiance;
+    warnings.add(
+        "lamps",
+        "the brightest gives a white surface a radiance of " + text(float(radiance)) + ", where 1 is white: the file " +
+            (radiance < black_radiance ? "was probably" : "may have been") + " exported unitless; " +
+            (is_raw ? "its numbers are read as W/sr and W/m2" : "--lamp-units raw reads its numbers as W/sr and W/m2"));
+    if (!is_raw) {
+      return;
+    }
   }
   for (const Handle<Lamp> handle : punctual) {
     scene.edit(handle, [](Lamp &lamp) { lamp.intensity = float(double(lamp.intensity) * lumen_per_watt); });

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_node_tree.hh"
 
-#include "internal/gltf_report.hh"
-
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace gnomon::gltf {
 
@@ -13,8 +12,17 @@ static std::string label_of(const Model &model, int node)
   return label("node", model.nodes[node].name, static_cast<std::size_t>(node));
 }
 
-/** The parent of each node, -1 for a root. \throws Fault if the nodes are not trees. */
-static std::vector<int> parents(const Model &model)
+namespace {
+
+struct Trees {
+  /** Of each node; -1: it is a root. */
+  std::vector<int> parent;
+  /** All nodes, each after its parent. */
+  std::vector<int> order;
+};
+
+/** \throws Fault if the nodes of the file are not trees */
+Trees trees_of(const Model &model)
 {
   const std::vector<Model::Node> &nodes = model.nodes;
   std::vector<int> parent(nodes.size(), -1);
@@ -28,29 +36,31 @@ static std::vector<int> parents(const Model &model)
     }
   }
   // Every node has at most one parent, so nodes that no root reaches are on a cycle or below one.
-  std::vector<int> reached;
+  std::vector<int> order;
   for (std::size_t i = 0; i < nodes.size(); i++) {
     if (parent[i] < 0) {
-      reached.push_back(static_cast<int>(i));
+      order.push_back(static_cast<int>(i));
     }
   }
   std::vector<bool> is_reached(nodes.size(), false);
-  for (std::size_t i = 0; i < reached.size(); i++) {
-    is_reached[reached[i]] = true;
-    const std::vector<int> &children = nodes[reached[i]].children;
-    reached.insert(reached.end(), children.begin(), children.end());
+  for (std::size_t i = 0; i < order.size(); i++) {
+    is_reached[order[i]] = true;
+    const std::vector<int> &children = nodes[order[i]].children;
+    order.insert(order.end(), children.begin(), children.end());
   }
   const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
   if (lost != is_reached.end()) {
     throw Fault(label_of(model, static_cast<int>(lost - is_reached.begin())),
                 "is its own ancestor, or a descendant of such a node");
   }
-  return parent;
+  return {std::move(parent), std::move(order)};
 }
 
-std::vector<int> scene_roots(const Model &model)
+}  // namespace
+
+std::vector<int> scene_roots(const Model &model, Warnings &warnings)
 {
-  const std::vector<int> parent = parents(model);
+  const auto [parent, order] = trees_of(model);
   std::vector<int> roots;
   const Model::Scene *source = model.default_scene();
   if (source == nullptr) {
@@ -61,17 +71,31 @@ std::vector<int> scene_roots(const Model &model)
     }
     return roots;
   }
-  roots = source->roots;
   std::vector<bool> is_listed(parent.size(), false);
-  for (const int root : roots) {
-    if (parent[root] >= 0) {
-      throw Fault(label_of(model, root),
-                  "is a root of the scene, but also a child of " + label_of(model, parent[root]));
+  for (const int node : source->roots) {
+    is_listed[node] = true;
+  }
+  std::vector<bool> is_below_listed(parent.size(), false);
+  for (const int node : order) {
+    const int up = parent[node];
+    is_below_listed[node] = up >= 0 && (is_listed[up] || is_below_listed[up]);
+  }
+  // Exporters of Unity list a child without its parent.
+  std::vector<bool> is_added(parent.size(), false);
+  for (const int node : source->roots) {
+    const bool is_below = is_below_listed[node];
+    if (is_added[node]) {
+      warnings.add(label_of(model, node), "is twice a root of the scene: it is drawn once");
     }
-    if (is_listed[root]) {
-      throw Fault(label_of(model, root), "is twice a root of the scene");
+    else if (parent[node] >= 0) {
+      warnings.add(label_of(model, node), "is a root of the scene, but also a child of " +
+                                              label_of(model, parent[node]) + ": it is drawn " +
+                                              (is_below ? "below that node alone" : "without that node"));
     }
-    is_listed[root] = true;
+    if (!is_below && !is_added[node]) {
+      roots.push_back(node);
+    }
+    is_added[node] = true;
   }
   return roots;
 }

@@ -4,6 +4,7 @@
 #include "trace.hh"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -412,26 +413,28 @@ bool GlDevice::driver_trim()
   if (limits().is_software) {
     // llvmpipe has a queue of up to 64 framebuffers to draw. An entry refers to its attachments and textures until it
     // is used again, also after their deletion, and the driver takes the first one that is idle, so that later ones can
-    // keep hundreds of megabytes. So many clears follow each other faster than they are drawn, and reach all entries;
-    // twice, as on a busy machine they may not.
+    // keep hundreds of megabytes. A large clear keeps the rasteriser busy, so that the small ones after it reach all
+    // entries; twice, as a thread that waits for a busy machine may submit them too late.
     constexpr int queue_size = 64;
-    constexpr int size_px = 64;
-    GLuint renderbuffer = 0;
-    GLuint framebuffer = 0;
-    glCreateRenderbuffers(1, &renderbuffer);
-    glNamedRenderbufferStorage(renderbuffer, GL_R8, size_px, size_px);
-    glCreateFramebuffers(1, &framebuffer);
-    glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffer);
+    std::array<GLuint, 2> renderbuffers = {};
+    std::array<GLuint, 2> framebuffers = {};
+    glCreateRenderbuffers(2, renderbuffers.data());
+    glCreateFramebuffers(2, framebuffers.data());
+    constexpr std::array<int, 2> sizes_px = {2048, 64};
+    for (std::size_t i = 0; i < sizes_px.size(); i++) {
+      glNamedRenderbufferStorage(renderbuffers[i], GL_R8, sizes_px[i], sizes_px[i]);
+      glNamedFramebufferRenderbuffer(framebuffers[i], GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, renderbuffers[i]);
+    }
     const glm::vec4 black(0.0F);
     for (int time = 0; time < 2; time++) {
       glFinish();
       for (int i = 0; i < queue_size; i++) {
-        glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, &black.x);
+        glClearNamedFramebufferfv(framebuffers[i == 0 ? 0 : 1], GL_COLOR, 0, &black.x);
         glFlush();
       }
     }
-    glDeleteFramebuffers(1, &framebuffer);
-    glDeleteRenderbuffers(1, &renderbuffer);
+    glDeleteFramebuffers(2, framebuffers.data());
+    glDeleteRenderbuffers(2, renderbuffers.data());
     glFinish();
   }
   return true;

@@ -332,9 +332,9 @@ class SpirvReader {
     }
   }
 
-  /** \a first_byte: where the struct \a id begins in \a block. */
+  /** \a first_byte: where the struct \a id begins in \a block. \a outer: the arrays that it is an element of. */
   void add_members(std::uint32_t id, const std::string &prefix, const std::string &structure, SourcePosition position,
-                   std::uint32_t first_byte, Declaration &block)
+                   std::uint32_t first_byte, const std::vector<ProgramBinding::Array> &outer, Declaration &block)
   {
     const SpirvType &type = module_.type(id);
     for (std::uint32_t i = 0; i < type.operands.size(); i++) {
@@ -342,16 +342,22 @@ class SpirvReader {
       const std::string name = prefix + member.name;
       const std::uint32_t offset_bytes =
           first_byte + std::uint32_t(value_or(find(member.decorations, spv::DecorationOffset), 0));
-      const std::uint32_t element = element_of(type.operands[i]);
+      std::vector<ProgramBinding::Array> arrays = outer;
+      std::string first = name;
+      std::uint32_t element = type.operands[i];
+      for (; is_array(module_.type(element)); element = module_.type(element).operands[0]) {
+        arrays.push_back({std::uint32_t(std::max(length_of(module_.type(element)), 0)),
+                          std::uint32_t(value_or(find(element, spv::DecorationArrayStride), 0))});
+        first += "[0]";
+      }
       if (module_.type(element).op == spv::OpTypeStruct) {
         const std::string inner = module_.name(element);
-        add_members(element, name + (element == type.operands[i] ? "." : "[0]."), inner,
-                    lines_.find_declaration(inner, "struct"), offset_bytes, block);
+        add_members(element, first + ".", inner, lines_.find_declaration(inner, "struct"), offset_bytes, arrays, block);
         continue;
       }
       block.members.push_back({name, structure, lines_.find_member(position, member.name),
                                declared_type(type.operands[i]), offset_bytes,
-                               size_of(type.operands[i], member.decorations)});
+                               size_of(type.operands[i], member.decorations), std::move(arrays)});
       const bool has_rows = value_or(find(type.operands[i], spv::DecorationArrayStride), 0) == 16;
       check_array(declared_type(type.operands[i]), has_rows, block.members.back(), facts.findings);
     }
@@ -455,7 +461,7 @@ class SpirvReader {
     declaration.is_push_constant =
         variable.storage == spv::StorageClassPushConstant || declaration.name == gpu::push_constant_block_name;
     declaration.size_bytes = size_of(element, {});
-    add_members(element, "", "", declaration.position, 0, declaration);
+    add_members(element, "", "", declaration.position, 0, {}, declaration);
     (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
   }
 

@@ -2,6 +2,7 @@
 // The declarations of a stage, their use and likely mistakes.
 #pragma once
 
+#include "shader_check_program.hh"
 #include "shader_check_sources.hh"
 
 #include <glslang/Public/ShaderLang.h>
@@ -44,6 +45,7 @@ struct BlockMember {
   DeclaredType type{};
   std::uint32_t offset_bytes = 0;
   std::uint32_t size_bytes = 0;
+  std::vector<ProgramBinding::Array> arrays{};
 };
 
 /** A block, texture, stage input or stage output. */

@@ -26,10 +26,19 @@ class StageReader : public TIntermTraverser {
   std::map<std::string, std::set<std::string>> calls;
   std::set<long long> used;
 
-  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
+  StageReader() : TIntermTraverser(true, false, true) {}
+
+  bool visitAggregate(TVisit visit, TIntermAggregate *aggregate) override
   {
     if (aggregate->getOp() == glslang::EOpLinkerObjects) {
       return false;
+    }
+    if (visit == glslang::EvPostVisit) {
+      // Initializers of globals stand between functions.
+      if (aggregate->getOp() == glslang::EOpFunction) {
+        function_.clear();
+      }
+      return true;
     }
     if (aggregate->getOp() == glslang::EOpFunction) {
       functions.push_back(aggregate);
@@ -46,6 +55,7 @@ class StageReader : public TIntermTraverser {
   }
 
  private:
+  /** Empty: outside of functions. */
   std::string function_;
 };
 
@@ -128,8 +138,11 @@ void add_members(const TType &type, const std::string &prefix, const std::string
   for (const glslang::TTypeLoc &entry : *type.getStruct()) {
     const std::string name = prefix + text_of(entry.type->getFieldName());
     if (entry.type->isStruct()) {
-      add_members(*entry.type, name + (entry.type->isArray() ? "[0]." : "."), text_of(entry.type->getTypeName()),
-                  is_std140, lines, block, findings);
+      std::string first = name;
+      for (int i = 0; entry.type->isArray() && i < entry.type->getArraySizes()->getNumDims(); i++) {
+        first += "[0]";
+      }
+      add_members(*entry.type, first + ".", text_of(entry.type->getTypeName()), is_std140, lines, block, findings);
       continue;
     }
     block.members.push_back({name, structure, position_of(entry.loc, lines)});
