@@ -143,10 +143,36 @@ struct CasterTree::MeshTree {
   }
 };
 
+double CasterTree::cover_of(const scene::Scene &scene, const scene::Mesh &mesh, const Covers &last)
+{
+  const scene::Material &material = scene.material_of(mesh);
+  const scene::TextureSlot &slot = material.base_color_texture;
+  if (!render_scene::is_masked(scene, mesh) || render_scene::has_surface_function(scene, material) ||
+      !render_scene::is_drawable(scene, mesh, slot)) {
+    return 1.0;
+  }
+  const scene::Handle<scene::Image> handle = scene.textures()[slot.texture].image;
+  const CoverKey key{handle.key(), scene.images().revision(handle, scene::Image::Aspect::Content),
+                     material.alpha_cutoff / material.alpha};
+  const auto [cover, is_new] = covers_.try_emplace(key, 1.0);
+  if (const auto found = last.find(key); is_new && found != last.end()) {
+    cover->second = found->second;
+  }
+  else if (const scene::Image &image = scene.images()[handle]; is_new && !image.texels.empty()) {
+    std::size_t count = 0;
+    for (std::size_t i = 3; i < image.texels.size(); i += 4) {
+      count += float(image.texels[i]) / 255.0F >= key.cutoff ? 1 : 0;
+    }
+    cover->second = double(count) / double(image.texels.size() / 4);
+  }
+  return cover->second;
+}
+
 std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &scene)
 {
   const std::vector<Caster> casters = std::exchange(casters_, {});
   const auto meshes = std::exchange(meshes_, {});
+  const Covers covers = std::exchange(covers_, {});
   const scene::Scene &content = scene.scene();
   instances_.clear();
   std::vector<scene::Bounds> boxes;
@@ -157,6 +183,7 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
     const scene::Handle<scene::Mesh> handle = scene.object(i).mesh;
     const scene::Mesh &mesh = content.meshes()[handle];
     if (mesh.topology != scene::Topology::Triangles || mesh.indices.empty() ||
+        !render_scene::is_drawable(content, content.material_of(mesh)) ||
         render_scene::lets_light_through(content, mesh)) {
       continue;
     }
@@ -168,16 +195,25 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
     }
     struct {
       MeshKey mesh;
+      double cover;
       glm::mat4 world_from_object;
-    } print{key, scene.objects().world_from_object(i)};
+    } print{key, cover_of(content, mesh, covers), scene.objects().world_from_object(i)};
     casters_.push_back({.bounds_ws = scene.object(i).bounds,
                         .object = i,
                         .fingerprint = fingerprint_of(std::as_bytes(std::span(&print, 1)))});
-    instances_.push_back({tree.get(), glm::inverse(print.world_from_object), scene.objects().is_mirrored(i)});
+    instances_.push_back(
+        {tree.get(), glm::inverse(print.world_from_object), scene.objects().is_mirrored(i), print.cover});
     boxes.push_back(scene.object(i).bounds);
   }
   tree_ = BoxTree(boxes);
   return changed_bounds(casters, casters_);
+}
+
+/** Whether a mask that covers the part \a cover of a triangle does so at barycentric coordinates: as good as random. */
+static bool is_covered(float u, float v, double cover)
+{
+  const double place = 1013.0 * double(u) + 757.0 * double(v);
+  return place - std::floor(place) < cover;
 }
 
 RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest) const
@@ -200,7 +236,8 @@ RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_
       const float u = glm::dot(from_corner, p) * inverse;
       const float v = glm::dot(direction, q) * inverse;
       const float t = glm::dot(triangle.edges[1], q) * inverse;
-      if (determinant != 0.0F && u >= -margin && v >= -margin && u + v <= 1.0F + margin && t > 0.0F && t < t_max) {
+      if (determinant != 0.0F && u >= -margin && v >= -margin && u + v <= 1.0F + margin && t > 0.0F && t < t_max &&
+          is_covered(u, v, instance.cover)) {
         t_max = t;
         hit = (determinant < 0.0F) == instance.is_mirrored ? RayHit::Front : RayHit::Back;
       }

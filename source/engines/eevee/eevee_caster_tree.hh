@@ -46,7 +46,8 @@ enum class RayHit : std::uint8_t { None, Front, Back };
 
 /**
  * The triangles of a scene's casters. Those of blended and transmissive materials are left out, as are those in buffers
- * of a host, which the CPU does not have. Masked materials block light where they are cut out, too.
+ * of a host, which the CPU does not have. The texture of a masked material blocks the part of the rays that it covers,
+ * in no particular places.
  */
 class CasterTree {
  public:
@@ -68,6 +69,8 @@ class CasterTree {
     const MeshTree *mesh;
     glm::mat4 object_from_world;
     bool is_mirrored;
+    /** Part of the rays that its triangles block. */
+    double cover;
   };
   struct MeshKey {
     std::uint64_t mesh;
@@ -75,7 +78,21 @@ class CasterTree {
 
     auto operator<=>(const MeshKey &) const = default;
   };
+  /** Of a mask. */
+  struct CoverKey {
+    std::uint64_t image;
+    scene::Revision content;
+    /** Least alpha that is drawn. */
+    float cutoff;
+
+    auto operator<=>(const CoverKey &) const = default;
+  };
+  using Covers = std::map<CoverKey, double>;
+  /** The part that the texture of a masked mesh covers; 1 for other meshes. \a last: before the update. */
+  double cover_of(const scene::Scene &scene, const scene::Mesh &mesh, const Covers &last);
+
   std::map<MeshKey, std::shared_ptr<const MeshTree>> meshes_;
+  Covers covers_;
   std::vector<Caster> casters_;
   std::vector<Instance> instances_;
   BoxTree tree_;

@@ -146,6 +146,42 @@ TEST_F(WorldOcclusionTest, OfEditsIsThatOfANewScene)
   expect_as_new(0.0);
 }
 
+TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheMaskLeaves)
+{
+  const auto texture = test::add_texture(scene, 2, {255, 255, 255, 255, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0});
+  const auto material = test::add_material(scene, glm::vec3(1.0F));
+  const auto set_cutoff = [&](float cutoff) {
+    scene.edit(material, [&](scene::Material &value) {
+      value.base_color_texture.texture = texture;
+      value.alpha_mode = scene::AlphaMode::Mask;
+      value.alpha_cutoff = cutoff;
+    });
+  };
+  set_cutoff(0.5F);
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(50.0)));
+  WorldOcclusion occlusion;
+  const auto mean_below = [&] {
+    double sum = 0.0;
+    int count = 0;
+    for_each_probe(traced(occlusion), [&](const glm::vec3 &p, const glm::vec3 &positive, const glm::vec3 &negative) {
+      if (std::max(std::abs(p.x), std::abs(p.y)) < 30.0F && p.z < 0.0F) {
+        EXPECT_EQ(negative.z, 1.0F);
+        sum += double(positive.z);
+        count++;
+      }
+    });
+    EXPECT_GT(count, 40);
+    return sum / count;
+  };
+  // About 60 probes with 128 rays: a deviation of 0.006.
+  EXPECT_NEAR(mean_below(), 0.75, 0.02);
+  set_cutoff(0.3F);
+  EXPECT_NEAR(mean_below(), 0.5, 0.02);
+  // No texel is drawn.
+  scene.edit(material, [](scene::Material &value) { value.alpha = 0.2F; });
+  EXPECT_EQ(traced(occlusion).probe_count.x, 0.0F);
+}
+
 TEST_F(WorldOcclusionTest, NeedsCasters)
 {
   const auto node = add_box({-1, -1, -1}, {1, 1, 1});
