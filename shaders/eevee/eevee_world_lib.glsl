@@ -15,6 +15,70 @@ layout(std140, binding = WORLD_BLOCK_SLOT) uniform world_block
   WorldBlock world;
 };
 
+/** Parts of the world's light that arrive on surfaces that face the positive and the negative axes. */
+struct WorldParts {
+  vec3 positive;
+  vec3 negative;
+};
+
+/** From the probes above the plane of \a surface; 1 if there are none. */
+WorldParts world_parts(Surface surface)
+{
+  bool has_probes = world.probe_count.x > 0.0;
+  vec3 last = max(world.probe_count.xyz - 1.0, 0.0);
+  // In cells between probes.
+  vec3 place = surface.position_ws * world.probe_scale.xyz + world.probe_offset.xyz;
+  vec3 normal = has_probes ? normalize(surface.geometric_normal_ws / world.probe_scale.xyz) : vec3(0.0);
+  // Above the surface, between probes of which some count also if others are in its plane.
+  vec3 above = clamp(place + 0.2 * normal, vec3(0.0), last);
+  vec3 low = clamp(floor(above), vec3(0.0), max(last - 1.0, 0.0));
+  vec3 share = above - low;
+  ivec3 stride = 2 * ivec3(1, int(world.probe_count.x), int(world.probe_count.x * world.probe_count.y));
+  int first = int(low.x) * stride.x + int(low.y) * stride.y + int(low.z) * stride.z;
+  // Where no probe counts, nothing is known to block the light.
+  const float unknown = 1e-6;
+  WorldParts sum = WorldParts(vec3(unknown), vec3(unknown));
+  float weights = unknown;
+  int corner = has_probes ? 0 : 7;
+  // The test is at the end as in lights_radiance.
+  do {
+    ivec3 side = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+    vec3 near = mix(1.0 - share, share, vec3(side));
+    int probe = has_probes ? first + side.x * stride.x + side.y * stride.y + side.z * stride.z : 0;
+    // Probes below the plane of the surface are behind a wall, or see the body block light that the surface has not lost.
+    float height = dot(normal, low + vec3(side) - place);
+    float weight = near.x * near.y * near.z * clamp(8.0 * height, 0.0, 1.0) * world.probes[probe].w;
+    sum.positive += weight * world.probes[probe].xyz;
+    sum.negative += weight * world.probes[probe + 1].xyz;
+    weights += weight;
+  } while (++corner < 8);
+  sum.positive /= weights;
+  sum.negative /= weights;
+  // The probes hold square roots, so that those beyond a wall add little to dark places.
+  return WorldParts(sum.positive * sum.positive, sum.negative * sum.negative);
+}
+
+/**
+ * Part of the world's light from around the unit vector \a direction that arrives at \a surface. Probes see the surface itself
+ * block the light from below its plane, of which it has none: what arrives is divided by what a plane leaves.
+ */
+float world_arriving(WorldParts parts, Surface surface, vec3 direction)
+{
+  vec3 is_positive = step(0.0, direction);
+  // The light on a surface is between those on surfaces that face the axes (McTaggart 2004).
+  vec3 weight = direction * direction * mix(world.whole_negative.xyz, world.whole_positive.xyz, is_positive);
+  vec3 above = 0.5 + 0.5 * surface.geometric_normal_ws * (2.0 * is_positive - 1.0);
+  float whole = dot(weight, above);
+  float arriving = dot(weight, mix(parts.negative, parts.positive, is_positive));
+  return arriving < whole ? arriving / whole : 1.0;
+}
+
+/** Irradiance / π of the world's light that arrives at \a surface. */
+vec3 world_diffuse(WorldParts parts, Surface surface)
+{
+  return world_irradiance(world, surface.normal_ws) * world_arriving(parts, surface, surface.normal_ws);
+}
+
 #ifdef USE_SPECULAR
 layout(binding = WORLD_LEVELS_SLOT) uniform sampler2DArray world_levels;
 
@@ -29,13 +93,19 @@ vec3 world_radiance(vec3 direction, float alpha)
   return max(mix(sharp, blurred, level - low), vec3(0.0));
 }
 
+/** The unit vector to the viewer, mirrored at the unit vector \a normal_ws. */
+vec3 mirrored_view(Surface surface, vec3 normal_ws)
+{
+  return 2.0 * dot(normal_ws, surface.view_ws) * normal_ws - surface.view_ws;
+}
+
 /**
  * Specular radiance of the world towards the viewer without occlusion, by the split-sum approximation (Karis 2013): the
  * mean radiance over the lobe, times the \a albedo of the lobe. \a normal_ws: at which the view is mirrored.
  */
 vec3 world_mirrored(MaterialData material, Surface surface, vec3 normal_ws, vec3 albedo)
 {
-  vec3 mirrored = 2.0 * dot(normal_ws, surface.view_ws) * normal_ws - surface.view_ws;
+  vec3 mirrored = mirrored_view(surface, normal_ws);
   // The dominant direction of a rough lobe is closer to the normal (Lagarde and de Rousiers 2014, 4.9.3).
   float lean = (1.0 - material.alpha) * (sqrt(max(1.0 - material.alpha, 0.0)) + material.alpha);
   return albedo * world_radiance(mix(normal_ws, mirrored, lean), material.alpha);
@@ -86,16 +156,19 @@ vec3 world_light(MaterialData material, Surface surface, vec3 mirror_ws)
 #endif
     return vec3(0.0);
   }
-  vec3 diffuse = material.diffuse * material.occlusion * world_irradiance(world, surface.normal_ws);
+  WorldParts parts = world_parts(surface);
+  vec3 irradiance = world_diffuse(parts, surface);
+  vec3 diffuse = material.diffuse * material.occlusion * irradiance;
 #if defined(USE_MULTISCATTER)
   Multiscatter multiscatter = surface.multiscatter;
   diffuse *= unreflected(multiscatter.view, material.specular_f0, material.specular_f90, multiscatter.color);
   // Its lobe is wide, so that it reflects the mean radiance around the normal.
   vec3 multiple = multiscatter.color * (multiscatter.view.missing * material.occlusion);
-  return diffuse + multiple * world_irradiance(world, surface.normal_ws) +
-         world_mirrored(material, surface, mirror_ws, albedo);
+  return diffuse + multiple * irradiance +
+         world_arriving(parts, surface, mirrored_view(surface, mirror_ws)) * world_mirrored(material, surface, mirror_ws, albedo);
 #elif defined(USE_SPECULAR)
-  return diffuse * (1.0 - max(max(albedo.r, albedo.g), albedo.b)) + world_mirrored(material, surface, mirror_ws, albedo);
+  return diffuse * (1.0 - max(max(albedo.r, albedo.g), albedo.b)) +
+         world_arriving(parts, surface, mirrored_view(surface, mirror_ws)) * world_mirrored(material, surface, mirror_ws, albedo);
 #else
   return diffuse;
 #endif

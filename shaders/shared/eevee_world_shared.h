@@ -18,6 +18,9 @@ SHARED_BEGIN
 /** Number of points over all samples in the narrowest lobe that they draw. Narrower lobes are widened to it. */
 #define WORLD_SUN_LOBE_POINTS 4.0f
 
+/** Most probes of the visible parts of the world. */
+#define WORLD_PROBE_MAX 368
+
 /** A direction within a sun of the world. */
 struct WorldSunPoint {
   /** Unit vector, world space. */
@@ -43,8 +46,21 @@ struct WorldBlock {
   int sun_count;
   /** WORLD_SUN_POINTS for each sun. They draw highlights that are too narrow for the one direction of a sun in a sample. */
   WorldSunPoint sun_points[WORLD_SUN_MAX * WORLD_SUN_POINTS];
+  /** xyz: probes along each axis. 0: nothing blocks the light. */
+  vec4 probe_count;
+  /** xyz: the place of a position among the probes along each axis is position * scale + offset. */
+  vec4 probe_scale;
+  vec4 probe_offset;
+  /** xyz: irradiance of the whole world on surfaces that face the positive and the negative axes, in any unit. */
+  vec4 whole_positive;
+  vec4 whole_negative;
+  /**
+   * Two for each probe, xyz: square roots of the parts of that irradiance that arrive, along the positive and the negative axes. w of
+   * the first: the weight of the probe.
+   */
+  vec4 probes[2 * WORLD_PROBE_MAX];
 };
-SHARED_ASSERT_SIZE(WorldBlock, 160 + WORLD_SUN_MAX * WORLD_SUN_POINTS * 32)
+SHARED_ASSERT_SIZE(WorldBlock, 160 + WORLD_SUN_MAX * WORLD_SUN_POINTS * 32 + 80 + 32 * WORLD_PROBE_MAX)
 
 /** Irradiance / π on a surface with the unit normal \a n (Ramamoorthi and Hanrahan 2001). At least 0. */
 SHARED_FUNCTION vec3 world_irradiance(WorldBlock world, vec3 n)

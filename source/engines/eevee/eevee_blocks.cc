@@ -136,6 +136,12 @@ constexpr auto world_fields = std::to_array<Field>({
     {"world.sun_points[0]._pad0", sun_points_offset + offsetof(WorldSunPoint, _pad0)},
     {"world.sun_points[0].irradiance", sun_points_offset + offsetof(WorldSunPoint, irradiance)},
     {"world.sun_points[0]._pad1", sun_points_offset + offsetof(WorldSunPoint, _pad1)},
+    {"world.probe_count", offsetof(WorldBlock, probe_count)},
+    {"world.probe_scale", offsetof(WorldBlock, probe_scale)},
+    {"world.probe_offset", offsetof(WorldBlock, probe_offset)},
+    {"world.whole_positive", offsetof(WorldBlock, whole_positive)},
+    {"world.whole_negative", offsetof(WorldBlock, whole_negative)},
+    {"world.probes", offsetof(WorldBlock, probes)},
 });
 
 constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);

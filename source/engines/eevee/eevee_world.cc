@@ -3,12 +3,16 @@
 #include "eevee_resource_report.hh"
 
 #include "eevee_settings.hh"
+#include "eevee_world_occlusion.hh"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -43,6 +47,9 @@ bool has_background(const Settings &settings, const render_scene::RenderScene &s
           (settings.background.kind == Background::Kind::World && scene.scene().world()));
 }
 
+SceneWorld::SceneWorld() = default;
+SceneWorld::~SceneWorld() = default;
+
 void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings)
 {
   const Key key{scene.world_revision(), settings.planned_sample_count(), !settings.light.has(LightPart::Kind::World)};
@@ -51,10 +58,30 @@ void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature fe
     levels_ = {};
   }
   if (!has(features, Feature::World)) {
+    occlusion_.reset();
+    probe_key_.reset();
     return;
   }
+  std::optional<ProbeKey> probe_key;
+  if (key_.sample_count == 1 && settings.shadow.kind != scene::ShadowKind::None) {
+    probe_key = {scene.world_revision(), scene.objects().revision(), scene.passes_revision()};
+  }
+  if (!probe_key) {
+    occlusion_.reset();
+  }
+  else if (probe_key_ != probe_key) {
+    if (!occlusion_) {
+      occlusion_ = std::make_unique<WorldOcclusion>();
+    }
+    occlusion_->update(scene);
+  }
+  const bool are_probes_current = std::exchange(probe_key_, probe_key) == probe_key;
   if (!block_) {
-    make_block(scene);
+    block_ = scene.device().create_buffer({"world_block", gpu::BufferKind::Uniform, sizeof(shared::WorldBlock)});
+    write_block(scene);
+  }
+  else if (!are_probes_current) {
+    write_block(scene);
   }
   if (!has(features, Feature::Specular)) {
     levels_ = {};
@@ -64,7 +91,7 @@ void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature fe
   }
 }
 
-void SceneWorld::make_block(const render_scene::RenderScene &scene)
+void SceneWorld::write_block(const render_scene::RenderScene &scene)
 {
   const render_scene::WorldLight &world = *scene.world();
   shared::WorldBlock block{};
@@ -74,7 +101,9 @@ void SceneWorld::make_block(const render_scene::RenderScene &scene)
   block.is_sampled = key_.sample_count > 1 ? 1 : 0;
   const double lobe_share = world_lobe_directions / (double(world_direction_count) * key_.sample_count);
   block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
-  block_ = scene.device().create_buffer({"world_block", gpu::BufferKind::Uniform, sizeof(block)});
+  if (occlusion_) {
+    occlusion_->write(block);
+  }
   scene.device().update(block_, block);
 }
 
@@ -119,7 +148,7 @@ void SceneWorld::write_suns(std::span<const shared::WorldSunPoint> points, int f
     int sun_count = 0;
     std::array<shared::WorldSunPoint, std::size_t(WORLD_SUN_MAX) * WORLD_SUN_POINTS> points{};
   } values;
-  static_assert(sizeof(values) == sizeof(shared::WorldBlock) - offsetof(shared::WorldBlock, first_sun));
+  static_assert(sizeof(values) == offsetof(shared::WorldBlock, probe_count) - offsetof(shared::WorldBlock, first_sun));
   if (!block_) {
     return;
   }
@@ -168,7 +197,12 @@ void SceneWorld::report(ResourceReport &report) const
 {
   report.add_target(levels_, "world_levels", "specular reflection of the world",
                     report.why_no_feature(report.has(Feature::World) ? Feature::Specular : Feature::World));
-  report.add_block(block_, "world_block", "light from all around", report.why_no_feature(Feature::World));
+  const int probe_count = occlusion_ ? occlusion_->probe_count() : 0;
+  report.add_block(block_, "world_block",
+                   probe_count > 0
+                       ? fmt::format("light from all around, and its parts that arrive at {} places", probe_count)
+                       : "light from all around",
+                   report.why_no_feature(Feature::World));
 }
 
 }  // namespace gnomon::eevee

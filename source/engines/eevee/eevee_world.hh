@@ -8,11 +8,15 @@
 #include "render_scene.hh"
 #include "render_world.hh"
 
+#include <memory>
+#include <optional>
+
 /** Light of the scene's world, and the background of a picture. \see render_world.hh */
 namespace gnomon::eevee {
 
 struct ResourceReport;
 struct Settings;
+class WorldOcclusion;
 
 /** Number of directions of WorldLight::rest in each sample of a picture with several samples. */
 inline constexpr int world_direction_count = 4;
@@ -31,6 +35,11 @@ inline constexpr double world_lobe_directions = 12.0;
 /** The scene's world on the device. Internal to the engine. */
 class SceneWorld {
  public:
+  SceneWorld();
+  SceneWorld(const SceneWorld &) = delete;
+  SceneWorld &operator=(const SceneWorld &) = delete;
+  ~SceneWorld();
+
   /**
    * Create the resources of the world's light that \a features need, and free the others.
    * \pre with Feature::World, the scene has a world
@@ -58,9 +67,18 @@ class SceneWorld {
   }
 
  private:
-  void make_block(const render_scene::RenderScene &scene);
+  void write_block(const render_scene::RenderScene &scene);
   void make_levels(const render_scene::RenderScene &scene);
 
+  /** Inputs from which the probes of `block_` were made. */
+  struct ProbeKey {
+    /** RenderScene::world_revision, and the revisions of what its casters depend on. */
+    std::uint64_t world = 0;
+    std::uint64_t objects = 0;
+    std::uint64_t passes = 0;
+
+    bool operator==(const ProbeKey &) const = default;
+  };
   /** Inputs from which `block_` and `levels_` were made. */
   struct Key {
     /** RenderScene::world_revision. */
@@ -72,6 +90,9 @@ class SceneWorld {
     bool operator==(const Key &) const = default;
   };
   Key key_;
+  std::optional<ProbeKey> probe_key_;
+  /** Empty unless pictures have one sample, a world and shadows. */
+  std::unique_ptr<WorldOcclusion> occlusion_;
   /** Empty without Feature::World. */
   gpu::Buffer block_;
   /** Prefiltered levels for specular reflection. Empty without specular materials. */

@@ -192,6 +192,66 @@ TEST_F(WorldGpuTest, ASunInASmoothMetalIsThatOfTheReference)
   EXPECT_LT(middle(4).g, 0.05F);
 }
 
+TEST_F(WorldGpuTest, OneFrameOfAClosedRoomIsBlack)
+{
+  test::remove_objects(scene);
+  scene.set_world(scene::World{});
+  const auto box = test::add_box_mesh(scene, material);
+  const auto add = [&](const glm::dvec3 &center, const glm::dvec3 &half) {
+    return test::add_object(scene, box, glm::scale(glm::translate(glm::dmat4(1.0), center), half));
+  };
+  add({0, 0, -0.1}, {2.2, 2.2, 0.1});
+  add({-2.1, 0, 2}, {0.1, 2.2, 2});
+  add({2.1, 0, 2}, {0.1, 2.2, 2});
+  add({0, -2.1, 2}, {2, 0.1, 2});
+  add({0, 2.1, 2}, {2, 0.1, 2});
+  const auto top = add({0, 0, 4.1}, {2.2, 2.2, 0.1});
+  camera = test::camera_at({0.3, 0.2, 3.5}, {0.1, 0.1, 0}, 1.0F);
+  test::Renderer renderer(*device, scene, {32, 32}, {.shadow = {.map_size_px = 256}, .sample_count = 1});
+  const auto brightest = [&] {
+    renderer.sync();
+    float largest = 0.0F;
+    for (const glm::vec4 &pixel : renderer.picture(camera).pixels) {
+      largest = std::max(largest, pixel.b);
+    }
+    return largest;
+  };
+  // The shader adds a weight of 1e-6 for what no probe knows, and squares.
+  EXPECT_LT(brightest(), 1e-9F);
+  const glm::dmat4 closed = scene.nodes()[top].parent_from_node;
+  scene.set_transform(top, glm::translate(glm::dmat4(1.0), glm::dvec3(20, 0, 0)) * closed);
+  EXPECT_GT(brightest(), 0.1F);
+  scene.set_transform(top, closed);
+  EXPECT_LT(brightest(), 1e-9F);
+}
+
+/** A convex body alone keeps its light. Objects without shadows change no bit. */
+TEST_F(WorldGpuTest, OneFrameWithoutOcclusionIsThatWithoutShadows)
+{
+  test::remove_objects(scene);
+  scene.set_world(scene::World{.color = {1.0F, 0.8F, 0.6F}});
+  scene.edit(material, [](scene::Material &value) { value.roughness = 0.4F; });
+  const auto box = test::add_box_mesh(scene, material);
+  test::add_object(scene, box, glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1, 2, 3))));
+  camera = test::camera_at({4, 3, 5}, {0, 0, 0}, 0.5F);
+  const auto drawn = [&](scene::ShadowKind kind) {
+    test::Renderer renderer(*device, scene, {32, 32}, {.shadow = {.kind = kind}, .sample_count = 1});
+    return renderer.picture(camera).pixels;
+  };
+  const std::vector<glm::vec4> expected = drawn(scene::ShadowKind::None);
+  const std::vector<glm::vec4> alone = drawn(scene::ShadowKind::Hard);
+  for (std::size_t i = 0; i < alone.size(); i++) {
+    test::expect_near(glm::vec3(alone[i]), glm::vec3(expected[i]), 1e-6F);
+  }
+  test::add_object(scene, box, glm::translate(glm::dmat4(1.0), {1, 2, 1}));
+  const std::vector<glm::vec4> without = drawn(scene::ShadowKind::None);
+  EXPECT_NE(drawn(scene::ShadowKind::Hard), without);
+  for (const scene::Object &object : scene.objects()) {
+    scene.edit(object.node, [](scene::Node &value) { value.casts_shadow = false; });
+  }
+  EXPECT_EQ(drawn(scene::ShadowKind::Hard), without);
+}
+
 TEST_F(WorldGpuTest, BlackIsNoWorldAndCompilesNothingOfIt)
 {
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "shadows/shadow_casters.hh"
+
+#include "render_scene.hh"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+/** Rays against the casters of a scene, on the CPU. Internal to the engine. */
+namespace gnomon::eevee {
+
+/** Boxes of items in a binary tree, split at the median of the longest axis. */
+class BoxTree {
+ public:
+  BoxTree() = default;
+  explicit BoxTree(std::span<const scene::Bounds> boxes);
+  /**
+   * Call \a visit with the index of each item in a leaf that the ray meets before \a t_max, which \a visit may lower.
+   * Ends when \a visit returns true.
+   */
+  template <typename Visit>
+  void visit(const glm::vec3 &origin, const glm::vec3 &direction, const float &t_max, Visit &&visit) const;
+
+ private:
+  struct Node {
+    scene::Bounds box;
+    /** Of a leaf: the first of its `count` items. Otherwise the second child; the first child is the next node. */
+    std::uint32_t next = 0;
+    std::uint32_t count = 0;
+  };
+  void build(std::span<const scene::Bounds> boxes, std::size_t first, std::size_t end);
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> items_;
+};
+
+/** The side of a triangle that a ray meets. */
+enum class RayHit : std::uint8_t { None, Front, Back };
+
+/**
+ * The triangles of a scene's casters. Those of blended and transmissive materials are left out, as are those in buffers
+ * of a host, which the CPU does not have. The texture of a masked material blocks the part of the rays that it covers,
+ * in no particular places.
+ */
+class CasterTree {
+ public:
+  /** Take the casters of \a scene. \return the bounds of those that are new, gone or have changed */
+  std::vector<scene::Bounds> update(const render_scene::RenderScene &scene);
+  /**
+   * Both sides of all triangles block a ray. \a direction_ws: of any length but 0. \a is_nearest: return the side of
+   * the nearest triangle; otherwise of any, which takes less time. May be called by several threads.
+   */
+  [[nodiscard]] RayHit trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest) const;
+  [[nodiscard]] bool empty() const
+  {
+    return instances_.empty();
+  }
+
+ private:
+  struct MeshTree;
+  struct Instance {
+    const MeshTree *mesh;
+    glm::mat4 object_from_world;
+    bool is_mirrored;
+    /** Part of the rays that its triangles block. */
+    double cover;
+  };
+  struct MeshKey {
+    std::uint64_t mesh;
+    scene::Revision shape;
+
+    auto operator<=>(const MeshKey &) const = default;
+  };
+  /** Of a mask. */
+  struct CoverKey {
+    std::uint64_t image;
+    scene::Revision content;
+    /** Least alpha that is drawn. */
+    float cutoff;
+
+    auto operator<=>(const CoverKey &) const = default;
+  };
+  using Covers = std::map<CoverKey, double>;
+  /** The part that the texture of a masked mesh covers; 1 for other meshes. \a last: before the update. */
+  double cover_of(const scene::Scene &scene, const scene::Mesh &mesh, const Covers &last);
+
+  std::map<MeshKey, std::shared_ptr<const MeshTree>> meshes_;
+  Covers covers_;
+  std::vector<Caster> casters_;
+  std::vector<Instance> instances_;
+  BoxTree tree_;
+};
+
+}  // namespace gnomon::eevee

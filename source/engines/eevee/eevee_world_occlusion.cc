@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_world_occlusion.hh"
+
+#include "scene_parallel.hh"
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+namespace gnomon::eevee {
+
+namespace {
+
+constexpr int probe_rays = 256;
+/** The first rays of a probe, which find bodies around it. */
+constexpr int body_rays = 32;
+
+/**
+ * Direction of a ray of a probe. Directions are even over the sphere, and mirrored in all axes: a plane that is
+ * perpendicular to one blocks exactly a half of the light along the others. Probes have other directions, so that a
+ * mean over some probes has more of them.
+ */
+glm::vec3 ray_direction(std::size_t probe, int ray)
+{
+  constexpr int octants = 8;
+  // The first rays are even over the sphere, too: 9 and 32 have no common factor.
+  const int i = 9 * (ray / octants) % (probe_rays / octants);
+  const double y = (i + 0.5) * octants / probe_rays;
+  const double across = std::sqrt(1.0 - y * y);
+  const double turn = i / std::numbers::phi + double(probe) / (std::numbers::phi * std::numbers::phi);
+  const double azimuth = 0.5 * std::numbers::pi * (turn - std::floor(turn));
+  const glm::vec3 direction(across * std::cos(azimuth), y, across * std::sin(azimuth));
+  const glm::ivec3 is_negative(ray & 1, ray >> 1 & 1, ray >> 2 & 1);
+  return direction * glm::vec3(1 - 2 * is_negative);
+}
+
+/** Luminance of the rest of \a world from \a direction. */
+float luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
+{
+  constexpr glm::ivec2 size = render_scene::WorldLight::size;
+  const glm::ivec2 texel(shared::equirectangular(direction) * glm::vec2(size));
+  const glm::ivec2 inside = glm::clamp(texel, glm::ivec2(0), size - 1);
+  return glm::dot(world.rest[std::size_t(inside.y * size.x + inside.x)], glm::vec3(0.2126F, 0.7152F, 0.0722F));
+}
+
+bool meets(const scene::Bounds &box, const glm::vec3 &origin, const glm::vec3 &direction)
+{
+  const glm::vec3 a = (box.min - origin) / direction;
+  const glm::vec3 b = (box.max - origin) / direction;
+  const glm::vec3 low = glm::min(a, b);
+  const glm::vec3 high = glm::max(a, b);
+  const float enter = std::max({low.x, low.y, low.z, 0.0F});
+  // A ray within a face gives NaN, for which the result is true.
+  return !(enter > 1.001F * std::min({high.x, high.y, high.z}));
+}
+
+glm::vec3 quotient_or_one(const glm::vec3 &part, const glm::vec3 &whole)
+{
+  return glm::mix(glm::vec3(1.0F), part / glm::max(whole, glm::vec3(1e-30F)), glm::greaterThan(whole, glm::vec3(0.0F)));
+}
+
+}  // namespace
+
+glm::ivec3 WorldOcclusion::place_of(std::size_t probe) const
+{
+  const int index = int(probe);
+  return {index % count_.x, index / count_.x % count_.y, index / (count_.x * count_.y)};
+}
+
+void WorldOcclusion::place(const scene::Bounds &bounds_ws)
+{
+  bounds_ws_ = bounds_ws;
+  const glm::vec3 size = glm::max(bounds_ws.max - bounds_ws.min, glm::vec3(1e-6F));
+  glm::vec3 extent;
+  // Cells that are as cubic as can be. A flat scene has probes at both of its sides.
+  float edge = std::max({size.x, size.y, size.z}) / float(WORLD_PROBE_MAX);
+  do {
+    edge *= 1.02F;
+    extent = glm::max(size, glm::vec3(edge));
+    count_ = glm::max(glm::ivec3(glm::ceil(extent / edge)), 2);
+  } while (probe_count() > WORLD_PROBE_MAX);
+  step_ = extent / glm::vec3(count_);
+  first_ws_ = 0.5F * (bounds_ws.min + bounds_ws.max - extent + step_);
+}
+
+void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
+{
+  std::atomic<std::uint64_t> traced = 0;
+  scene::parallel_for(std::size_t(probe_count()), 0, [&](std::size_t probe) {
+    const glm::vec3 position_ws = first_ws_ + glm::vec3(place_of(probe)) * step_;
+    std::uint64_t count = 0;
+    for (int ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = ray_direction(probe, ray);
+      if (std::ranges::any_of(changed, [&](const scene::Bounds &box) { return meets(box, position_ws, direction); })) {
+        hits_[probe * probe_rays + std::size_t(ray)] = casters_.trace(position_ws, direction, ray < body_rays);
+        count++;
+      }
+    }
+    traced += count;
+  });
+  rays_traced_ += traced;
+}
+
+void WorldOcclusion::add_up(const render_scene::WorldLight &world)
+{
+  whole_positive_ = whole_negative_ = glm::vec3(0.0F);
+  probes_.assign(std::size_t(probe_count()), {});
+  for (std::size_t probe = 0; probe < probes_.size(); probe++) {
+    const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
+    const auto backs = std::ranges::count(hits.first(body_rays), RayHit::Back);
+    const auto fronts = std::ranges::count(hits.first(body_rays), RayHit::Front);
+    // Below a ground of one side, half of the rays meet its back.
+    const bool is_inside = 4 * backs >= body_rays && backs >= 4 * fronts;
+    probes_[probe].weight = is_inside ? 1e-2F : 1.0F;
+    glm::vec3 positive(0.0F);
+    glm::vec3 negative(0.0F);
+    glm::vec3 all_positive(0.0F);
+    glm::vec3 all_negative(0.0F);
+    for (int ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = ray_direction(probe, ray);
+      const float light = luminance(world, direction);
+      const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
+      const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
+      const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
+      all_positive += light * along;
+      all_negative += light * against;
+      positive += part * along;
+      negative += part * against;
+    }
+    // Quotients of sums over the same rays: where nothing blocks any, they are exactly 1.
+    probes_[probe].positive = quotient_or_one(positive, all_positive);
+    probes_[probe].negative = quotient_or_one(negative, all_negative);
+    whole_positive_ += all_positive;
+    whole_negative_ += all_negative;
+  }
+}
+
+void WorldOcclusion::update(const render_scene::RenderScene &scene)
+{
+  const std::vector<scene::Bounds> changed = casters_.update(scene);
+  const scene::Bounds bounds_ws = scene.bounds();
+  if (casters_.empty() || scene.world()->rest_directions.empty()) {
+    count_ = glm::ivec3(0);
+    return;
+  }
+  if (probe_count() == 0 || bounds_ws.min != bounds_ws_.min || bounds_ws.max != bounds_ws_.max) {
+    place(bounds_ws);
+    hits_.assign(std::size_t(probe_count()) * probe_rays, RayHit::None);
+    trace(std::span(&bounds_ws, 1));
+  }
+  else {
+    trace(changed);
+  }
+  add_up(*scene.world());
+}
+
+void WorldOcclusion::write(shared::WorldBlock &block) const
+{
+  block.probe_count = glm::vec4(count_, 0.0F);
+  block.probe_scale = glm::vec4(1.0F / step_, 0.0F);
+  block.probe_offset = glm::vec4(-first_ws_ / step_, 0.0F);
+  block.whole_positive = glm::vec4(whole_positive_, 0.0F);
+  block.whole_negative = glm::vec4(whole_negative_, 0.0F);
+  for (std::size_t i = 0; i < std::size_t(probe_count()); i++) {
+    block.probes[2 * i] = glm::vec4(glm::sqrt(probes_[i].positive), probes_[i].weight);
+    block.probes[2 * i + 1] = glm::vec4(glm::sqrt(probes_[i].negative), 0.0F);
+  }
+}
+
+}  // namespace gnomon::eevee

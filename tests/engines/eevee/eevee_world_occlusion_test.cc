@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// The parts of a world's light that arrive at probes, against closed forms.
+#include "eevee_world_occlusion.hh"
+#include "eevee_test_scene.hh"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace gnomon::eevee {
+namespace {
+
+/** Boxes in a world of radiance 1. */
+class WorldOcclusionTest : public testing::Test {
+ protected:
+  WorldOcclusionTest()
+  {
+    scene.set_world(scene::World{});
+  }
+  scene::Handle<scene::Node> add_box(const glm::dvec3 &min, const glm::dvec3 &max)
+  {
+    return test::add_object(scene, box, placed(min, max));
+  }
+  /** Of the unit box of add_box_mesh, which is from -1 to 1. */
+  static glm::dmat4 placed(const glm::dvec3 &min, const glm::dvec3 &max)
+  {
+    return glm::scale(glm::translate(glm::dmat4(1.0), 0.5 * (min + max)), 0.5 * (max - min));
+  }
+  /** A room of 4 m with walls of 0.2 m and an open top. */
+  void add_room()
+  {
+    add_box({-2.2, -2.2, -0.2}, {2.2, 2.2, 0.0});
+    add_box({-2.2, -2.2, 0.0}, {-2.0, 2.2, 4.0});
+    add_box({2.0, -2.2, 0.0}, {2.2, 2.2, 4.0});
+    add_box({-2.0, -2.2, 0.0}, {2.0, -2.0, 4.0});
+    add_box({-2.0, 2.0, 0.0}, {2.0, 2.2, 4.0});
+  }
+  shared::WorldBlock traced(WorldOcclusion &occlusion)
+  {
+    rendered.update();
+    occlusion.update(rendered);
+    shared::WorldBlock block{};
+    occlusion.write(block);
+    return block;
+  }
+  /** Calls \a visit with the position of each probe, and the parts that arrive there along the axes and against them.
+   */
+  template <typename Visit>
+  static void for_each_probe(const shared::WorldBlock &block, Visit &&visit)
+  {
+    const glm::ivec3 count(block.probe_count);
+    for (int i = 0; i < count.x * count.y * count.z; i++) {
+      const glm::vec3 place(i % count.x, i / count.x % count.y, i / (count.x * count.y));
+      const glm::vec3 position = (place - glm::vec3(block.probe_offset)) / glm::vec3(block.probe_scale);
+      const glm::vec3 positive(block.probes[2 * i]);
+      const glm::vec3 negative(block.probes[2 * i + 1]);
+      visit(position, positive * positive, negative * negative);
+    }
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Mesh> box = test::add_box_mesh(scene, test::add_material(scene, glm::vec3(1.0F)));
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  render_scene::RenderScene rendered{*device, scene};
+};
+
+/** Form factor of the rectangle from 0 to \a a and 0 to \a b at the height \a c, for a horizontal element below its
+ * corner. */
+double corner_form_factor(double a, double b, double c)
+{
+  const double x = a / c;
+  const double y = b / c;
+  const double p = std::sqrt(1.0 + x * x);
+  const double q = std::sqrt(1.0 + y * y);
+  return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2.0 * std::numbers::pi);
+}
+
+TEST_F(WorldOcclusionTest, InAnOpenRoomIsTheFormFactorOfTheOpening)
+{
+  add_room();
+  WorldOcclusion occlusion;
+  int count = 0;
+  double difference = 0.0;
+  for_each_probe(traced(occlusion), [&](const glm::vec3 &p, const glm::vec3 &positive, const glm::vec3 &negative) {
+    if (std::max(std::abs(p.x), std::abs(p.y)) < 1.9F && p.z > 0.0F) {
+      double expected = 0.0;
+      for (const double x : {2.0 - double(p.x), 2.0 + double(p.x)}) {
+        for (const double y : {2.0 - double(p.y), 2.0 + double(p.y)}) {
+          expected += corner_form_factor(x, y, 4.0 - double(p.z));
+        }
+      }
+      // A probe has 128 rays upwards. The largest error seen is 0.071.
+      EXPECT_NEAR(double(positive.z), expected, 0.08) << p.x << ' ' << p.y << ' ' << p.z;
+      EXPECT_EQ(negative.z, 0.0F);
+      difference += double(positive.z) - expected;
+      count++;
+    }
+  });
+  EXPECT_GT(count, 100);
+  EXPECT_NEAR(difference / count, 0.0, 0.01);
+}
+
+TEST_F(WorldOcclusionTest, AClosedRoomHasNone)
+{
+  add_room();
+  add_box({-2.2, -2.2, 4.0}, {2.2, 2.2, 4.2});
+  WorldOcclusion occlusion;
+  int count = 0;
+  for_each_probe(traced(occlusion), [&](const glm::vec3 &p, const glm::vec3 &positive, const glm::vec3 &negative) {
+    if (std::max(std::abs(p.x), std::abs(p.y)) < 2.0F && p.z > 0.0F && p.z < 4.0F) {
+      EXPECT_EQ(positive, glm::vec3(0.0F));
+      EXPECT_EQ(negative, glm::vec3(0.0F));
+      count++;
+    }
+  });
+  EXPECT_GT(count, 100);
+}
+
+TEST_F(WorldOcclusionTest, OfEditsIsThatOfANewScene)
+{
+  add_room();
+  const auto small = add_box({0.0, 0.0, 1.0}, {0.5, 0.5, 1.5});
+  WorldOcclusion edited;
+  static_cast<void>(traced(edited));
+  const std::uint64_t all = edited.rays_traced();
+  const auto expect_as_new = [&](double most_rays) {
+    const std::uint64_t before = edited.rays_traced();
+    const shared::WorldBlock block = traced(edited);
+    EXPECT_LE(double(edited.rays_traced() - before), most_rays * double(all));
+    WorldOcclusion made;
+    const shared::WorldBlock expected = traced(made);
+    for (int i = 0; i < 2 * made.probe_count(); i++) {
+      EXPECT_EQ(block.probes[i], expected.probes[i]) << i;
+    }
+    EXPECT_EQ(block.whole_positive, expected.whole_positive);
+  };
+  scene.set_transform(small, placed({-1.0, -0.5, 2.0}, {-0.5, 0.0, 2.5}));
+  expect_as_new(0.1);
+  scene.set_world(scene::World{.color = {0.5F, 1.0F, 2.0F}});
+  expect_as_new(0.0);
+}
+
+TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheMaskLeaves)
+{
+  const auto texture = test::add_texture(scene, 2, {255, 255, 255, 255, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0});
+  const auto material = test::add_material(scene, glm::vec3(1.0F));
+  const auto set_cutoff = [&](float cutoff) {
+    scene.edit(material, [&](scene::Material &value) {
+      value.base_color_texture.texture = texture;
+      value.alpha_mode = scene::AlphaMode::Mask;
+      value.alpha_cutoff = cutoff;
+    });
+  };
+  set_cutoff(0.5F);
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(50.0)));
+  WorldOcclusion occlusion;
+  const auto mean_below = [&] {
+    double sum = 0.0;
+    int count = 0;
+    for_each_probe(traced(occlusion), [&](const glm::vec3 &p, const glm::vec3 &positive, const glm::vec3 &negative) {
+      if (std::max(std::abs(p.x), std::abs(p.y)) < 30.0F && p.z < 0.0F) {
+        EXPECT_EQ(negative.z, 1.0F);
+        sum += double(positive.z);
+        count++;
+      }
+    });
+    EXPECT_GT(count, 40);
+    return sum / count;
+  };
+  // About 60 probes with 128 rays: a deviation of 0.006.
+  EXPECT_NEAR(mean_below(), 0.75, 0.02);
+  set_cutoff(0.3F);
+  EXPECT_NEAR(mean_below(), 0.5, 0.02);
+  // No texel is drawn.
+  scene.edit(material, [](scene::Material &value) { value.alpha = 0.2F; });
+  EXPECT_EQ(traced(occlusion).probe_count.x, 0.0F);
+}
+
+TEST_F(WorldOcclusionTest, NeedsCasters)
+{
+  const auto node = add_box({-1, -1, -1}, {1, 1, 1});
+  WorldOcclusion occlusion;
+  EXPECT_GT(traced(occlusion).probe_count.x, 0.0F);
+  scene.edit(node, [](scene::Node &value) { value.casts_shadow = false; });
+  EXPECT_EQ(traced(occlusion).probe_count.x, 0.0F);
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
