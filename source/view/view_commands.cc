@@ -171,6 +171,15 @@ void expect_selected(App &app, Words words)
   }
 }
 
+void expect_triangle(App &app, Words words)
+{
+  const overlay::Hit *hit = document(app).clicked();
+  const std::string met = hit && hit->triangle ? fmt::format("{}", hit->triangle->index) : "";
+  if (met != (words.empty() ? "" : words[0])) {
+    throw std::runtime_error(fmt::format("triangle '{}' was clicked", met));
+  }
+}
+
 /** Set a property of \a thing; the handle may be invalid. \return whether it has the property */
 template <typename T>
 bool set_of(Document &document, scene::Handle<T> thing, const std::string &name, Words values)
@@ -437,6 +446,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"select", "NODE", 1, 1, Need::Nothing, select},
     {"pick", "X Y", 2, 2, Need::Nothing, pick},
     {"selected", "[NODE]", 0, 1, Need::Nothing, expect_selected},
+    {"triangle", "[INDEX]", 0, 1, Need::Nothing, expect_triangle},
     {"set", "PROPERTY VALUE...", 2, 4, Need::Nothing, set},
     {"undo", "", 0, 0, Need::Nothing, undo},
     {"redo", "", 0, 0, Need::Nothing, redo},

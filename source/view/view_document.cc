@@ -142,6 +142,13 @@ void Document::set_settings(const WindowSettings &settings)
   }
 }
 
+void Document::click(const std::optional<overlay::Hit> &hit)
+{
+  selected = hit ? hit->node : scene::Handle<scene::Node>();
+  clicked_ = hit;
+  clicked_revision_ = scene_.revision();
+}
+
 std::vector<scene::Handle<scene::Node>> Document::selected_nodes() const
 {
   std::vector<scene::Handle<scene::Node>> nodes;

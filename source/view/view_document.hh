@@ -9,6 +9,7 @@
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"
+#include "overlay.hh"
 #include "render_scene.hh"
 
 #include <filesystem>
@@ -145,6 +146,14 @@ class Document {
 
   /** Invalid handle: no node is selected. */
   scene::Handle<scene::Node> selected{};
+  /** Select what a click in a picture met: a surface; empty: nothing. */
+  void click(const std::optional<overlay::Hit> &hit);
+  /** What the last click met. nullptr: no surface of the selected node, or the scene has changed since. */
+  [[nodiscard]] const overlay::Hit *clicked() const
+  {
+    const bool is_shown = clicked_ && clicked_->node == selected && clicked_revision_ == scene_.revision();
+    return is_shown ? &*clicked_ : nullptr;
+  }
   /** The selected node and its descendants. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_nodes() const;
   /** Bounding box of the selected nodes; a lamp counts as a point. Without a selection: of the scene. */
@@ -170,6 +179,9 @@ class Document {
   /** The time of the last write of the file of each surface function. */
   std::map<scene::Handle<scene::SurfaceFunction>, std::filesystem::file_time_type> function_times_;
   scene::Revision saved_revision_ = 0;
+  std::optional<overlay::Hit> clicked_;
+  /** scene::Scene::revision at the last click. */
+  scene::Revision clicked_revision_ = 0;
 };
 
 }  // namespace gnomon::view

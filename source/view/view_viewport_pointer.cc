@@ -46,8 +46,7 @@ void WindowViewport::pick(Document &document, glm::ivec2 pixel_px)
     }
   }
   const glm::ivec2 from_below(pixel_px.x, size_px_.y - 1 - pixel_px.y);
-  const std::optional<overlay::Hit> hit = overlay_->pick(drawn_view_, size_px_, from_below);
-  document.selected = hit ? hit->node : scene::Handle<scene::Node>();
+  document.click(overlay_->pick(drawn_view_, size_px_, from_below));
 }
 
 std::optional<Gizmo> WindowViewport::gizmo_of(Document &document) const

@@ -3,6 +3,7 @@
 
 #include "overlay_interfaces.hh"
 #include "overlay_programs.hh"
+#include "overlay_triangle.hh"
 
 #include "draw_view_shared.h"
 #include "gpu_read.hh"
@@ -180,9 +181,18 @@ std::optional<Hit> Overlay::pick(const draw::View &view, glm::ivec2 size_px, glm
   const glm::dvec2 ndc = 2.0 * (glm::dvec2(pixel_px) + 0.5) / glm::dvec2(size_px) - 1.0;
   const glm::dmat4 world_from_clip =
       glm::inverse(glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world()));
-  const glm::dvec4 position = world_from_clip * glm::dvec4(ndc, texel.y, 1.0);
+  const auto position_at = [&](double depth) {
+    const glm::dvec4 position = world_from_clip * glm::dvec4(ndc, depth, 1.0);
+    return glm::dvec3(position) / position.w + scene_.origin_ws();
+  };
   const render_scene::RenderObject &object = scene_.object(index);
-  return Hit{object.node, object.mesh, glm::dvec3(position) / position.w + scene_.origin_ws()};
+  Hit hit{.node = object.node, .mesh = object.mesh, .position_ws = position_at(double(texel.y))};
+  // A smaller depth is farther away. Half of a depth is within the range of both projections.
+  const glm::dvec3 direction_ws = position_at(0.5 * double(texel.y)) - position_at(1.0);
+  const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
+  hit.triangle = triangle_at(mesh, scene_.scene().world_from_node(object.node),
+                             scene_.scene().material_of(mesh).is_double_sided, direction_ws, hit.position_ws);
+  return hit;
 }
 
 void Overlay::draw_outline(const draw::View &view, glm::ivec2 size_px,

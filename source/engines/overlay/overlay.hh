@@ -19,12 +19,29 @@ namespace gnomon::overlay {
 enum class ShaderId;
 enum class Feature : std::uint32_t;
 
+/** A point on a triangle of a mesh. */
+struct TrianglePoint {
+  /** The corners are the vertices that Mesh::indices names at 3 · index, 3 · index + 1 and 3 · index + 2. */
+  std::uint32_t index = 0;
+  /** Weights of these corners: at least 0, with the sum 1. They interpolate every stream of the mesh. */
+  glm::dvec3 barycentric{1.0, 0.0, 0.0};
+  /** Interpolated Mesh::uvs; (0, 0) if the mesh has none. */
+  glm::vec2 uv{0.0F};
+  /**
+   * Interpolated Mesh::normals, a unit vector in world space. Where they add up to zero, that of the triangle. Of the
+   * front, also where the back is seen.
+   */
+  glm::vec3 normal_ws{0.0F, 0.0F, 1.0F};
+};
+
 /** The surface at the middle of a pixel. */
 struct Hit {
   scene::Handle<scene::Node> node;
   scene::Handle<scene::Mesh> mesh;
-  /** World space of the scene, metres. */
+  /** World space of the scene, metres. On the triangle, if there is one; otherwise from the depth of the pixel. */
   glm::dvec3 position_ws{0.0};
+  /** Of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host. */
+  std::optional<TrianglePoint> triangle{};
 };
 
 /** A straight line between two points. */
@@ -57,7 +74,8 @@ class Overlay {
   /**
    * The nearest surface at the middle of \a pixel_px, from the lower left corner; nothing: there is none, or the pixel
    * is not in the picture. Parts that an alpha mask cuts out, back faces of one-sided materials and invisible nodes are
-   * no surface. Draws the objects that the pixel can see into one pixel, and waits for it.
+   * no surface. Draws the objects that the pixel can see into one pixel, and waits for it. The CPU then searches all
+   * triangles of the mesh for the one that was drawn.
    */
   [[nodiscard]] std::optional<Hit> pick(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
   /**
