@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 /** The additions of an editor to a picture: the object under a pixel, an outline of selected objects, and lines in the
  * scene. */
@@ -43,6 +44,26 @@ struct Hit {
   /** Of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host. */
   std::optional<TrianglePoint> triangle{};
 };
+
+/** Which of the objects in an area of a picture Overlay::select finds. */
+enum class Reach {
+  /** Those that are seen there. */
+  Visible,
+  /** Also those that others hide. */
+  Through
+};
+
+/**
+ * The corners of a rectangle in a picture, for Overlay::select. \a from_px and \a to_px: any two opposite corners, in
+ * pixels from the lower left corner of the picture.
+ */
+[[nodiscard]] std::array<glm::dvec2, 4> rectangle(const glm::dvec2 &from_px, const glm::dvec2 &to_px);
+
+/**
+ * Whether \a point is within the closed polygon \a corners, of at least 3. Where the outline crosses itself, a point is
+ * inside if a line from it to infinity crosses the outline an odd number of times.
+ */
+[[nodiscard]] bool is_inside(std::span<const glm::dvec2> corners, const glm::dvec2 &point);
 
 /** A straight line between two points. */
 struct Line {
@@ -79,6 +100,17 @@ class Overlay {
    */
   [[nodiscard]] std::optional<Hit> pick(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
   /**
+   * The nodes with a surface, as pick() defines it, at the middle of at least one pixel within the closed polygon
+   * \a outline_px: a rectangle() or the path of a lasso. Corners are in pixels from the lower left corner of the
+   * picture, whose lowest left pixel has its middle at (0.5, 0.5); they may be outside of the picture, and fewer than 3
+   * enclose nothing. \see is_inside. Each node is there once, in the order of the objects.
+   *
+   * Draws the objects in the rectangle around the outline once for Reach::Visible, and reads that back. Reach::Through
+   * repeats it without the objects that were found until there are no more, as often as objects lie behind each other.
+   */
+  [[nodiscard]] std::vector<scene::Handle<scene::Node>> select(const draw::View &view, glm::ivec2 size_px,
+                                                               std::span<const glm::dvec2> outline_px, Reach reach);
+  /**
    * Draw a line around each visible object of \a nodes over the content of \a target, also where other objects hide it.
    * \a color: not premultiplied, and stored as Target::encoding stores; the view transform does not change it.
    * Target::composition and depth have no effect. \throws gpu::Error as draw::check
@@ -113,7 +145,7 @@ class Overlay {
 
     bool operator==(const ObjectsKey &) const = default;
   };
-  using IsDrawn = std::function<bool(const render_scene::RenderObject &object)>;
+  using IsDrawn = std::function<bool(draw::ObjectIndex object)>;
 
   void check_up_to_date() const;
   const gpu::Shader &shader(ShaderId id, Feature features);
@@ -135,6 +167,7 @@ class Overlay {
   gpu::Buffer view_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
+  /** Chosen objects, of an outline or in an area. */
   ObjectsTarget mask_;
   /** All objects, for lines that they hide. */
   ObjectsTarget hiding_;
@@ -144,7 +177,7 @@ class Overlay {
   gpu::Buffer line_block_;
 };
 
-/** \a view, restricted to one pixel of a picture of \a size_px, from the lower left corner. */
-[[nodiscard]] draw::View view_of_pixel(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
+/** \a view, restricted to some pixels of a picture of \a size_px, from the lower left corner. */
+[[nodiscard]] draw::View view_of_region(const draw::View &view, glm::ivec2 size_px, const gpu::Rectangle &region);
 
 }  // namespace gnomon::overlay

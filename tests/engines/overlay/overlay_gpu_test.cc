@@ -9,7 +9,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <map>
 #include <random>
+#include <set>
 
 namespace gnomon::overlay {
 namespace {
@@ -79,12 +81,12 @@ class OverlayGpuTest : public test::GpuDeviceTest {
     return glm::dvec2(10, 15) + (0.5 * glm::dvec2(clip) / clip.w + 0.5) * glm::dvec2(size_px);
   }
 
-  /** The ray through the middle of a pixel, in double, by the matrices that the device has as floats. */
-  [[nodiscard]] reference::Ray ray_through(int x, int y) const
+  /** The ray through the middle of a pixel, or beside it, in double, by the matrices that the device has as floats. */
+  [[nodiscard]] reference::Ray ray_through(const glm::dvec2 &pixel) const
   {
     const glm::dmat4 world_from_clip =
         glm::inverse(glm::dmat4(view().clip_from_view()) * glm::dmat4(view().view_from_world()));
-    const glm::dvec2 ndc = 2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(size_px) - 1.0;
+    const glm::dvec2 ndc = 2.0 * (pixel + 0.5) / glm::dvec2(size_px) - 1.0;
     const glm::dvec4 near = world_from_clip * glm::dvec4(ndc, 1.0, 1.0);
     const glm::dvec4 far = world_from_clip * glm::dvec4(ndc, 0.01, 1.0);
     const glm::dvec3 origin = glm::dvec3(near) / near.w;
@@ -119,7 +121,7 @@ class OverlayGpuTest : public test::GpuDeviceTest {
           continue;
         }
         EXPECT_TRUE(hit->triangle);
-        const reference::Ray ray = ray_through(x, y);
+        const reference::Ray ray = ray_through({x, y});
         const double t = glm::dot(glm::dvec3(world[3]) - ray.origin_ws, normal) / glm::dot(ray.direction_ws, normal);
         const glm::dvec3 position_ws = ray.origin_ws + t * ray.direction_ws;
         const glm::dvec2 inside = glm::dvec2(glm::inverse(world) * glm::dvec4(position_ws, 1.0)) / stretch;
@@ -292,7 +294,7 @@ TEST_F(OverlayGpuTest, APickedTriangleOfASphereHasTheAnglesOfItsPointAndItsNorma
   int count = 0;
   for (int y = 0; y < size_px.y; y++) {
     for (int x = 0; x < size_px.x; x++) {
-      const reference::Ray ray = ray_through(x, y);
+      const reference::Ray ray = ray_through({x, y});
       const glm::dvec3 from_middle = ray.origin_ws - middle;
       const double along = -glm::dot(from_middle, ray.direction_ws);
       const double past_squared = glm::dot(from_middle, from_middle) - along * along;
@@ -380,6 +382,130 @@ TEST_F(OverlayGpuTest, WhatAMaskCutsOutAndHiddenNodesLetThePixelThrough)
   EXPECT_EQ(picked(), back);
   scene.edit(back, [](scene::Node &node) { node.is_visible = false; });
   EXPECT_EQ(picked(), scene::Handle<scene::Node>());
+}
+
+TEST_F(OverlayGpuTest, APointIsInsideOfAnOutlineThatCrossesALineFromItAnOddNumberOfTimes)
+{
+  const auto square = rectangle({4, 1}, {1, 3});
+  EXPECT_TRUE(is_inside(square, {2, 2}));
+  EXPECT_FALSE(is_inside(square, {0.9, 2}));
+  EXPECT_FALSE(is_inside(square, {2, 3.1}));
+  // Rows through corners.
+  const std::array<glm::dvec2, 4> diamond = {{{0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
+  EXPECT_TRUE(is_inside(diamond, {0, 0}));
+  EXPECT_FALSE(is_inside(diamond, {-2, 0}));
+  EXPECT_FALSE(is_inside(diamond, {2, 1}));
+  // A star of one path: its middle is enclosed twice.
+  std::vector<glm::dvec2> star;
+  for (int i = 0; i < 5; i++) {
+    star.emplace_back(std::sin(0.8 * M_PI * i), std::cos(0.8 * M_PI * i));
+  }
+  EXPECT_FALSE(is_inside(star, {0, 0}));
+  EXPECT_TRUE(is_inside(star, {0, 0.8}));
+  EXPECT_FALSE(is_inside(std::span(star).first(2), {0, 0.5}));
+  EXPECT_FALSE(is_inside({}, {0, 0}));
+}
+
+TEST_F(OverlayGpuTest, AnAreaSelectsWhatRaysThroughItsPixelsMeetFirstOrAtAll)
+{
+  camera = test::camera_at({2, 3, 5}, {0, 0, 0});
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> range(-1.0, 1.0);
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  const auto box = test::add_box_mesh(scene, material);
+  const auto square = test::add_square_mesh(scene, material);
+  for (int i = 0; i < 60; i++) {
+    glm::dmat4 place = glm::translate(glm::dmat4(1), 2.0 * glm::dvec3(range(random), range(random), range(random)));
+    place = glm::rotate(place, 3.0 * range(random), glm::normalize(glm::dvec3(range(random), range(random), 0.1)));
+    test::add_object(scene, i % 2 == 0 ? box : square, glm::scale(place, glm::dvec3(0.3)));
+  }
+  // A second mesh, which must not make the node appear twice.
+  scene.edit(test::handle_at(scene.nodes(), 0), [&](scene::Node &node) { node.meshes.push_back(square); });
+  render_scene->update();
+  const reference::Tracer tracer(scene);
+  const std::vector<scene::Object> objects = scene.objects();
+  const auto nodes_met = [&](std::span<const glm::dvec2> outline, const glm::dvec2 &offset, bool is_through) {
+    std::map<std::uint32_t, int> pixels;
+    for (int y = 0; y < size_px.y; y++) {
+      for (int x = 0; x < size_px.x; x++) {
+        if (!is_inside(outline, glm::dvec2(x, y) + 0.5)) {
+          continue;
+        }
+        std::set<std::uint32_t> met;
+        reference::Ray ray = ray_through(glm::dvec2(x, y) + offset);
+        for (auto hit = tracer.closest(ray, reference::Faces::Drawn); hit;
+             hit = is_through ? tracer.closest(ray, reference::Faces::Drawn) : std::nullopt) {
+          met.insert(objects[tracer.surface_at(*hit).object].node.index);
+          ray.t_min = hit->t + 1e-6;
+        }
+        for (const std::uint32_t node : met) {
+          pixels[node]++;
+        }
+      }
+    }
+    return pixels;
+  };
+  std::size_t found_count = 0;
+  std::size_t hidden_count = 0;
+  for (int i = 0; i < 12; i++) {
+    // Some reach beyond the picture, and those with five corners cross themselves.
+    std::vector<glm::dvec2> outline;
+    for (int corner = 0; corner < 3 + i % 3; corner++) {
+      outline.push_back(glm::dvec2(size_px) * (0.5 + 0.6 * glm::dvec2(range(random), range(random))));
+    }
+    std::size_t visible_count = 0;
+    for (const Reach reach : {Reach::Visible, Reach::Through}) {
+      std::set<std::uint32_t> selected;
+      for (const auto node : overlay->select(view(), size_px, outline, reach)) {
+        EXPECT_TRUE(selected.insert(node.index).second) << "twice";
+      }
+      // The device rounds edges to parts of a pixel.
+      std::map<std::uint32_t, int> possible;
+      for (const glm::dvec2 &offset :
+           {glm::dvec2(0), glm::dvec2(0.02, 0), glm::dvec2(-0.02, 0), glm::dvec2(0, 0.02), glm::dvec2(0, -0.02)}) {
+        for (const auto &[node, count] : nodes_met(outline, offset, reach == Reach::Through)) {
+          possible[node] += count;
+        }
+      }
+      for (const auto &[node, count] : possible) {
+        EXPECT_TRUE(count < 15 || selected.contains(node)) << i << ": " << node << " has " << count / 5 << " pixels";
+      }
+      for (const std::uint32_t node : selected) {
+        EXPECT_TRUE(possible.contains(node)) << i << ": " << node;
+      }
+      found_count += selected.size();
+      hidden_count += reach == Reach::Through ? selected.size() - visible_count : 0;
+      visible_count = selected.size();
+    }
+  }
+  EXPECT_GT(found_count, 100U);
+  EXPECT_GT(hidden_count, 20U);
+}
+
+TEST_F(OverlayGpuTest, AnAreaWithinAHoleOfAMaskOrWithoutAPixelSelectsNothingOfIt)
+{
+  const auto masked = test::add_material(scene, glm::vec3(0.5F));
+  const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
+  scene.edit(masked, [&](scene::Material &material) {
+    material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
+    material.alpha_mode = scene::AlphaMode::Mask;
+  });
+  const auto front = add_square(0, masked);
+  const auto back = add_square(-1, test::add_material(scene, glm::vec3(0.5F)));
+  render_scene->update();
+  using Nodes = std::vector<scene::Handle<scene::Node>>;
+  const auto selected = [&](const glm::dvec2 &from, const glm::dvec2 &to, Reach reach) {
+    return overlay->select(view(), size_px, rectangle(from, to), reach);
+  };
+  const glm::dvec2 middle = 0.5 * glm::dvec2(size_px);
+  EXPECT_EQ(selected(middle - 4.0, middle - 1.0, Reach::Visible), Nodes{back});
+  EXPECT_EQ(selected(middle - 4.0, middle - 1.0, Reach::Through), Nodes{back});
+  EXPECT_EQ(selected(middle + 1.0, middle + 4.0, Reach::Visible), Nodes{front});
+  EXPECT_EQ(selected(middle + 1.0, middle + 4.0, Reach::Through), (Nodes{front, back}));
+  EXPECT_EQ(selected(glm::dvec2(-1e9), glm::dvec2(1e9), Reach::Visible), (Nodes{front, back}));
+  EXPECT_EQ(selected(middle + 1.0, middle + 1.4, Reach::Visible), Nodes()) << "the middle of no pixel";
+  EXPECT_EQ(selected(glm::dvec2(-5), glm::dvec2(-1), Reach::Through), Nodes()) << "beside the picture";
+  EXPECT_THROW(selected(glm::dvec2(NAN), middle, Reach::Visible), gpu::Error);
 }
 
 TEST_F(OverlayGpuTest, PixelsOutsideOfThePictureHaveNothingAndEditsWithoutAnUpdateAreAnError)
