@@ -45,7 +45,7 @@ draw::View view_of_region(const draw::View &view, glm::ivec2 size_px, const gpu:
   crop[1][1] = float(size_px.y) / part.y;
   crop[3][0] = offset.x;
   crop[3][1] = offset.y;
-  return {view.view_from_world(), crop * view.clip_from_view()};
+  return {view.view_from_world(), crop * view.clip_from_view(), {}, view.hidden()};
 }
 
 void Overlay::check_up_to_date() const
@@ -116,7 +116,8 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
   MaterialClass widest = MaterialClass::Plain;
   for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
-    if (!objects.is_live(index) || !is_drawn(index) || !view.touches(objects.volume(index))) {
+    if (!objects.is_live(index) || view.hidden().contains(index) || !is_drawn(index) ||
+        !view.touches(objects.volume(index))) {
       continue;
     }
     const render_scene::RenderObject &object = scene_.object(index);
