@@ -69,7 +69,7 @@ void SceneTree::show_node(Document &document, scene::Handle<scene::Node> handle)
   const bool is_leaf = !scene.first_child(handle) || *filter_ != '\0';
   const ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
                                    ImGuiTreeNodeFlags_DefaultOpen |
-                                   (handle == document.selected ? ImGuiTreeNodeFlags_Selected : 0) |
+                                   (document.is_selected(handle) ? ImGuiTreeNodeFlags_Selected : 0) |
                                    (is_leaf ? ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen : 0);
   const bool is_shown = scene.is_visible(handle);
   if (!is_shown) {
@@ -80,7 +80,7 @@ void SceneTree::show_node(Document &document, scene::Handle<scene::Node> handle)
     ImGui::PopStyleColor();
   }
   if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) {
-    document.selected = handle;
+    document.select(handle, ImGui::GetIO().KeyShift);
   }
   ImGui::TableNextColumn();
   ImGui::TextDisabled("%s", kind_of(node));

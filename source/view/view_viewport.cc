@@ -30,6 +30,7 @@ void WindowViewport::close()
   error_.restart();
   is_complete_ = false;
   is_transforming_ = false;
+  area_.reset();
   fly.reset();
 }
 
@@ -85,7 +86,9 @@ WindowViewport::OverlayKey WindowViewport::overlay_key(Document &document) const
     hidden.selected = document.settings().has_texel_density ? document.selected : hidden.selected;
     return hidden;
   }
-  OverlayKey key{true, document.selected, document.gizmo, document.orientation, pointed_, {}};
+  OverlayKey key{true,      document.selected, document.selection(), hidden_,
+                 isolated_, document.gizmo,    document.orientation, pointed_,
+                 {}};
   if (document.operation()) {
     key.operation = document.operation()->transform();
   }
@@ -117,7 +120,11 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   const bool is_same = viewport_ && key == synced_;
   const bool is_synced = is_same && !has_failed_;
   follow(document);
-  const draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
+  draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
+  std::erase_if(isolated_, [&](auto node) { return !document.scene().nodes().is_live(node); });
+  if (!hidden_.empty() || !isolated_.empty()) {
+    view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated_));
+  }
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     return true;
@@ -208,7 +215,8 @@ void WindowViewport::draw_overlays(Document &document, const draw::Target &targe
     return;
   }
   overlay_->draw_outline(drawn_view_, size_px_, document.selected_nodes(), outline_color, target);
-  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selected);
+  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selected,
+                                                [&](auto node) { return !is_hidden(document.scene(), node); });
   const std::optional<Gizmo> gizmo = gizmo_of(document);
   if (document.operation() || gizmo) {
     const auto more = document.operation() ? axis_lines(*document.operation(), map_) : gizmo->lines(map_, pointed_);

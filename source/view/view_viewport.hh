@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,30 @@ class WindowViewport {
    */
   bool show(Document &document, glm::vec2 size, bool is_active);
 
-  /** Select the node at a pixel, counted from the picture's upper left corner. \pre draw was called */
-  void pick(Document &document, glm::ivec2 pixel_px);
+  /**
+   * Select the node at a pixel, counted from the picture's upper left corner. \a adds: \see Document::select
+   * \pre draw was called
+   */
+  void pick(Document &document, glm::ivec2 pixel_px, bool adds = false);
+  /**
+   * Select the nodes in an area: what overlay::Overlay::select finds, and lamps and cameras. \a outline_px: pixels as
+   * for pick. \pre draw was called
+   */
+  void select_area(Document &document, std::span<const glm::dvec2> outline_px, overlay::Reach reach, bool adds);
+  /** Leave the selected nodes and their descendants out of this viewport's pictures. */
+  void hide(const Document &document);
+  /** Leave all but the selected nodes and their descendants out; the second call shows the others again. */
+  void isolate(const Document &document);
+  [[nodiscard]] bool is_isolated() const
+  {
+    return !isolated_.empty();
+  }
+  /** Undo hide and isolate. */
+  void show_all();
+  /** Whether the node is left out of this viewport. */
+  [[nodiscard]] bool is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const;
+  /** What is left out, for the header. Empty: nothing. */
+  [[nodiscard]] std::string hidden_text() const;
   /** Start to transform the selected node with the pointer. \pre draw was called \throws as TransformOperation */
   void begin_transform(Document &document, TransformKind kind);
   /**
@@ -105,6 +128,8 @@ class WindowViewport {
   std::string engine = "eevee";
   /** Show lamps, cameras, the outline of the selected nodes, and the gizmo. */
   bool has_overlays = true;
+  /** Which nodes the pointer selects in an area. */
+  overlay::Reach reach = overlay::Reach::Visible;
 
  private:
   /** Background colour behind the picture. */
@@ -124,6 +149,10 @@ class WindowViewport {
   struct OverlayKey {
     bool is_shown = false;
     scene::Handle<scene::Node> selected{};
+    std::vector<scene::Handle<scene::Node>> selection{};
+    /** Nodes that are left out; those without objects have no part in the view. */
+    std::vector<scene::Handle<scene::Node>> hidden{};
+    std::vector<scene::Handle<scene::Node>> isolated{};
     std::optional<TransformKind> gizmo{};
     Orientation orientation = Orientation::World;
     std::optional<TransformAxis> pointed{};
@@ -167,6 +196,9 @@ class WindowViewport {
   void show_lamps(Document &document, glm::vec2 corner, glm::vec2 size);
   void take_pointer(Document &document, glm::vec2 corner);
   void take_navigation(bool is_hovered);
+  /** Follow a drag that selects an area. \return whether there is one; it then consumes the pointer's input */
+  bool take_area(Document &document, glm::vec2 corner);
+  void show_area(glm::vec2 corner) const;
   /** \return whether an operation is running; it then consumes the pointer's input */
   bool take_operation(Document &document);
   /** The gizmo at the selected node. Empty: not shown. */
@@ -180,6 +212,15 @@ class WindowViewport {
   struct LookedThrough {
     scene::Handle<scene::Node> node;
     Navigation navigation;
+  };
+
+  /** The area that the pointer drags, in pixels as for pick. */
+  struct Area {
+    /** The path of a lasso, or two opposite corners of a rectangle. */
+    std::vector<glm::dvec2> points_px;
+    bool is_lasso = false;
+
+    [[nodiscard]] std::vector<glm::dvec2> outline_px() const;
   };
 
   Canvas canvas_;
@@ -220,6 +261,10 @@ class WindowViewport {
   bool is_transforming_ = false;
   /** The drag moves a handle, until the button is released. */
   bool is_handle_dragged_ = false;
+  std::optional<Area> area_;
+  /** \see hide, isolate */
+  std::vector<scene::Handle<scene::Node>> hidden_;
+  std::vector<scene::Handle<scene::Node>> isolated_;
 };
 
 }  // namespace gnomon::view
