@@ -207,6 +207,15 @@ void expect_triangle(App &app, Words words)
   }
 }
 
+void expect_inside(App &app, Words words)
+{
+  const auto node = drawn_viewport(app).dark_inside();
+  const std::string name = node ? document(app).scene().nodes()[*node].name : "";
+  if (name != (words.empty() ? "" : words[0])) {
+    throw std::runtime_error(fmt::format("all that is seen is the dark back of '{}'", name));
+  }
+}
+
 /** Set a property of \a thing; the handle may be invalid. \return whether it has the property */
 template <typename T>
 bool set_of(Document &document, scene::Handle<T> thing, const std::string &name, Words values)
@@ -476,6 +485,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"lasso", "X Y X Y X Y...", 6, any, Need::Nothing, select_lasso},
     {"selected", "[NODE...]", 0, any, Need::Nothing, expect_selected},
     {"triangle", "[INDEX]", 0, 1, Need::Nothing, expect_triangle},
+    {"inside", "[NODE]", 0, 1, Need::Nothing, expect_inside, true},
     {"set", "PROPERTY VALUE...", 2, 4, Need::Nothing, set},
     {"undo", "", 0, 0, Need::Nothing, undo},
     {"redo", "", 0, 0, Need::Nothing, redo},
@@ -496,7 +506,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"wait", "", 0, 0, Need::Pictures, wait},
     {"until", "TEXT", 1, 1, Need::Message, wait},
     {"screenshot", "FILE", 1, 1, Need::Frame, save_screenshot},
-    {"picture", "FILE", 1, 1, Need::Nothing, save_picture},
+    {"picture", "FILE", 1, 1, Need::Nothing, save_picture, true},
     {"stay", "", 0, 0, Need::Nothing, stay},
     {"close", "", 0, 0, Need::Frame, close},
     {"quit", "", 0, 0, Need::Frame, quit},

@@ -176,7 +176,40 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   draw_overlays(document, target);
   has_failed_ = false;
   is_complete_ = !eevee || (!is_preview && eevee->is_complete(*viewport_));
+  if (eevee && is_complete_) {
+    look_around(*eevee);
+  }
   return is_complete_;
+}
+
+void WindowViewport::look_around(draw::Engine &engine)
+{
+  if (std::exchange(dark_picture_, viewport_->restart_count()) == viewport_->restart_count()) {
+    return;
+  }
+  dark_inside_.reset();
+  std::optional<scene::Handle<scene::Node>> inside;
+  for (const glm::dvec2 &place :
+       {glm::dvec2(0.5, 0.5), glm::dvec2(0.1, 0.1), glm::dvec2(0.9, 0.1), glm::dvec2(0.1, 0.9), glm::dvec2(0.9, 0.9)}) {
+    const glm::ivec2 pixel(place * glm::dvec2(size_px_));
+    const std::optional<overlay::Hit> hit = overlay_->pick(drawn_view_, size_px_, {pixel.x, size_px_.y - 1 - pixel.y});
+    const glm::dvec3 away_ws = map_.ray_through(glm::dvec2(pixel) + 0.5).direction_ws;
+    const bool is_back = hit && hit->triangle && glm::dot(glm::dvec3(hit->triangle->normal_ws), away_ws) > 0.0;
+    if (!is_back || (inside && *inside != hit->node)) {
+      return;
+    }
+    inside = hit->node;
+  }
+  draw::Engine *one = &engine;
+  const std::vector<float> radiance = read_written(
+      viewport_->device(), [&](const draw::Target &target) { viewport_->write(std::span(&one, 1), target); });
+  // The least step of a display of eight bits. Alpha counts as no light.
+  constexpr float black = 1.0F / (255.0F * 12.92F);
+  bool is_black = true;
+  for (std::size_t i = 0; i < radiance.size(); i++) {
+    is_black &= i % 4 == 3 || radiance[i] < black;
+  }
+  dark_inside_ = is_black ? inside : std::nullopt;
 }
 
 void WindowViewport::limit_time(const Document &document, eevee::Engine &eevee)

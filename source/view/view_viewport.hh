@@ -111,6 +111,13 @@ class WindowViewport {
   {
     return error_.value();
   }
+  /**
+   * The node whose back is all that is seen in a black picture: the eye is likely inside of it. Empty: there is none.
+   */
+  [[nodiscard]] std::optional<scene::Handle<scene::Node>> dark_inside() const
+  {
+    return is_complete() && viewport_ && dark_picture_ == viewport_->restart_count() ? dark_inside_ : std::nullopt;
+  }
   /** The report of the last draw; nullptr: the draw had no budget. */
   [[nodiscard]] const eevee::BudgetReport *budget_report() const
   {
@@ -180,6 +187,8 @@ class WindowViewport {
   void limit_time(const Document &document, eevee::Engine &eevee);
   /** With a maximum error: end a picture that has reached it, or that has all its samples. */
   void limit_error(const Document &document, eevee::Engine &eevee);
+  /** Update dark_inside for a complete picture by \a engine. */
+  void look_around(draw::Engine &engine);
   /** Read back the picture that \a write writes to a target. */
   [[nodiscard]] std::vector<float> read_written(gpu::Device &device,
                                                 const std::function<void(const draw::Target &)> &write) const;
@@ -246,6 +255,9 @@ class WindowViewport {
   DensityKey density_key_;
   /** \see eevee::Inspection::texel_density */
   std::optional<std::vector<float>> density_;
+  std::optional<scene::Handle<scene::Node>> dark_inside_;
+  /** draw::Viewport::restart_count of the picture of dark_inside_. */
+  std::optional<std::uint64_t> dark_picture_;
   bool is_complete_ = false;
   /** The last draw threw. */
   bool has_failed_ = false;

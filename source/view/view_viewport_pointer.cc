@@ -321,6 +321,12 @@ bool WindowViewport::show(Document &document, glm::vec2 size, bool is_active)
     if (document.settings().has_texel_density && engine == "eevee") {
       show_density_scale(document, corner, size);
     }
+    if (const auto node = dark_inside(); node && document.scene().nodes().is_live(*node)) {
+      const std::string text = fmt::format("All that is seen is the back of {}, where no light is: the eye may be inside. Home shows all.",
+                                           document.scene().nodes()[*node].name);
+      ImGui::GetWindowDrawList()->AddText({at.x + 8.0F, at.y + 0.5F * size.y}, IM_COL32(255, 255, 255, 255),
+                                          text.c_str());
+    }
     if (is_transforming_ && document.operation()) {
       const std::string text = document.operation()->text();
       ImGui::GetWindowDrawList()->AddText({at.x + 9.0F, at.y + 7.0F}, IM_COL32(0, 0, 0, 200), text.c_str());

@@ -689,6 +689,16 @@ TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndo
   EXPECT_EQ(document.scene().world()->color, glm::vec3(0, 0, 1));
 }
 
+TEST(ViewPropertiesTest, AnglesAreShownWithoutTheRoundingOfMatrices)
+{
+  EXPECT_EQ(shown_number(1.84e-05, "°"), 0.0);
+  EXPECT_FALSE(std::signbit(shown_number(-1.84e-05, "°")));
+  EXPECT_EQ(shown_number(89.99999, "°"), 90.0);
+  EXPECT_EQ(shown_number(0.53, "°"), 0.53);
+  EXPECT_EQ(shown_number(1.84e-05, "m"), 1.84e-05);
+  EXPECT_FALSE(std::signbit(shown_number(-0.0, "m")));
+}
+
 TEST(ViewKeysTest, KeysAreNamedAsMenusShowThem)
 {
   EXPECT_EQ(key_of("g"), (KeyPress{'G', 0}));
