@@ -116,8 +116,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
   MaterialClass widest = MaterialClass::Plain;
   for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
-    if (!objects.is_live(index) || view.hidden().contains(index) || !is_drawn(index) ||
-        !view.touches(objects.volume(index))) {
+    if (!objects.is_live(index) || !is_drawn(index) || !view.touches(objects.volume(index))) {
       continue;
     }
     const render_scene::RenderObject &object = scene_.object(index);

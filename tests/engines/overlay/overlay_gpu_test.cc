@@ -120,7 +120,10 @@ class OverlayGpuTest : public test::GpuDeviceTest {
         if (!hit || hit->node != node) {
           continue;
         }
-        EXPECT_TRUE(hit->triangle);
+        if (!hit->triangle) {
+          ADD_FAILURE() << "no triangle at " << x << ", " << y;
+          continue;
+        }
         const reference::Ray ray = ray_through({x, y});
         const double t = glm::dot(glm::dvec3(world[3]) - ray.origin_ws, normal) / glm::dot(ray.direction_ws, normal);
         const glm::dvec3 position_ws = ray.origin_ws + t * ray.direction_ws;
@@ -308,6 +311,7 @@ TEST_F(OverlayGpuTest, APickedTriangleOfASphereHasTheAnglesOfItsPointAndItsNorma
         continue;
       }
       EXPECT_EQ(hit->node, node);
+      ASSERT_TRUE(hit->triangle);
       const glm::dvec3 exact = from_middle + (along - std::sqrt(1.0 - past_squared)) * ray.direction_ws;
       EXPECT_LT(glm::distance(hit->position_ws - middle, exact), 2.0 * sagitta);
       EXPECT_LT(glm::length(glm::cross(hit->position_ws - ray.origin_ws, ray.direction_ws)), 1e-6) << "on the ray";
