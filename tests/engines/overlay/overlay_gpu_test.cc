@@ -296,7 +296,7 @@ TEST_F(OverlayGpuTest, APickedTriangleOfASphereHasTheAnglesOfItsPointAndItsNorma
   const auto node = test::add_object(scene, scene.add(std::move(mesh)), glm::translate(glm::dmat4(1), middle));
   int count = 0;
   for (int y = 0; y < size_px.y; y++) {
-    for (int x = 0; x < size_px.x; x++) {
+    for (int x = 0; x < size_px.x; x += 2) {
       const reference::Ray ray = ray_through({x, y});
       const glm::dvec3 from_middle = ray.origin_ws - middle;
       const double along = -glm::dot(from_middle, ray.direction_ws);
@@ -324,7 +324,7 @@ TEST_F(OverlayGpuTest, APickedTriangleOfASphereHasTheAnglesOfItsPointAndItsNorma
       count++;
     }
   }
-  EXPECT_GT(count, 100);
+  EXPECT_GT(count, 70);
 }
 
 TEST_F(OverlayGpuTest, APickedTriangleIsTheOneBehindAHoleOfTheSameMeshAndPointsHaveNone)
@@ -451,7 +451,7 @@ TEST_F(OverlayGpuTest, AnAreaSelectsWhatRaysThroughItsPixelsMeetFirstOrAtAll)
   };
   std::size_t found_count = 0;
   std::size_t hidden_count = 0;
-  for (int i = 0; i < 12; i++) {
+  for (int i = 0; i < 9; i++) {
     // Some reach beyond the picture, and those with five corners cross themselves.
     std::vector<glm::dvec2> outline;
     for (int corner = 0; corner < 3 + i % 3; corner++) {
