@@ -87,15 +87,6 @@ void App::show_viewport_header(WindowViewport &viewport)
   if (report && ImGui::IsItemHovered()) {
     ImGui::SetTooltip("%s", report->text().c_str());
   }
-  if (const std::string hidden = viewport.hidden_text(); !hidden.empty()) {
-    ImGui::SameLine();
-    if (ImGui::SmallButton(hidden.c_str())) {
-      viewport.show_all();
-    }
-    if (ImGui::IsItemHovered()) {
-      ImGui::SetTooltip("Show all nodes in this viewport (Alt+H)");
-    }
-  }
 }
 
 void App::show_viewport(std::size_t index, glm::vec2 size)

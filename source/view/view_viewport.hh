@@ -63,12 +63,14 @@ class WindowViewport {
   {
     return !isolated_.empty();
   }
+  [[nodiscard]] bool is_hiding() const
+  {
+    return !isolated_.empty() || !hidden_.empty();
+  }
   /** Undo hide and isolate. */
   void show_all();
   /** Whether the node is left out of this viewport. */
   [[nodiscard]] bool is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const;
-  /** What is left out, for the header. Empty: nothing. */
-  [[nodiscard]] std::string hidden_text() const;
   /** Start to transform the selected node with the pointer. \pre draw was called \throws as TransformOperation */
   void begin_transform(Document &document, TransformKind kind);
   /**
@@ -208,6 +210,8 @@ class WindowViewport {
   /** Follow a drag that selects an area. \return whether there is one; it then consumes the pointer's input */
   bool take_area(Document &document, glm::vec2 corner);
   void show_area(glm::vec2 corner) const;
+  /** Say over the picture what is left out, and why it is black. */
+  void show_notes(const Document &document, glm::vec2 corner, glm::vec2 size) const;
   /** \return whether an operation is running; it then consumes the pointer's input */
   bool take_operation(Document &document);
   /** The gizmo at the selected node. Empty: not shown. */

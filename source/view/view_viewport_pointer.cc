@@ -109,14 +109,6 @@ bool WindowViewport::is_hidden(const scene::Scene &scene, scene::Handle<scene::N
   return !is_isolated;
 }
 
-std::string WindowViewport::hidden_text() const
-{
-  if (!isolated_.empty()) {
-    return fmt::format("{} isolated", isolated_.size());
-  }
-  return hidden_.empty() ? "" : fmt::format("{} hidden", hidden_.size());
-}
-
 std::vector<glm::dvec2> WindowViewport::Area::outline_px() const
 {
   if (is_lasso) {
@@ -124,6 +116,25 @@ std::vector<glm::dvec2> WindowViewport::Area::outline_px() const
   }
   const auto corners = overlay::rectangle(points_px.front(), points_px.back());
   return {corners.begin(), corners.end()};
+}
+
+void WindowViewport::show_notes(const Document &document, glm::vec2 corner, glm::vec2 size) const
+{
+  const auto write = [&](float y, const std::string &text) {
+    ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {corner.x + 8.0F, corner.y + y},
+                                        IM_COL32(255, 255, 255, 255), text.c_str(), nullptr, size.x - 16.0F);
+  };
+  if (!isolated_.empty()) {
+    write(size.y - 24.0F, fmt::format("{} isolated: / shows all", isolated_.size()));
+  }
+  else if (!hidden_.empty()) {
+    write(size.y - 24.0F, fmt::format("{} hidden: Alt+H shows all", hidden_.size()));
+  }
+  if (const auto node = dark_inside(); node && document.scene().nodes().is_live(*node)) {
+    write(0.5F * size.y,
+          fmt::format("All that is seen is the back of {}, where no light is: the eye may be inside. Home shows all.",
+                      document.scene().nodes()[*node].name));
+  }
 }
 
 bool WindowViewport::take_area(Document &document, glm::vec2 corner)
@@ -321,12 +332,7 @@ bool WindowViewport::show(Document &document, glm::vec2 size, bool is_active)
     if (document.settings().has_texel_density && engine == "eevee") {
       show_density_scale(document, corner, size);
     }
-    if (const auto node = dark_inside(); node && document.scene().nodes().is_live(*node)) {
-      const std::string text = fmt::format("All that is seen is the back of {}, where no light is: the eye may be inside. Home shows all.",
-                                           document.scene().nodes()[*node].name);
-      ImGui::GetWindowDrawList()->AddText({at.x + 8.0F, at.y + 0.5F * size.y}, IM_COL32(255, 255, 255, 255),
-                                          text.c_str());
-    }
+    show_notes(document, corner, size);
     if (is_transforming_ && document.operation()) {
       const std::string text = document.operation()->text();
       ImGui::GetWindowDrawList()->AddText({at.x + 9.0F, at.y + 7.0F}, IM_COL32(0, 0, 0, 200), text.c_str());
