@@ -14,9 +14,6 @@
 
 namespace gnomon::draw {
 
-/** Index of an object in `object_block`. Calls pass it to the vertex shader. */
-using ObjectIndex = std::uint32_t;
-
 /** Index of an object with the identity matrix, which always exists. */
 inline constexpr ObjectIndex object_identity = 0;
 

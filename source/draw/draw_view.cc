@@ -9,14 +9,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gnomon::draw {
 
-View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens)
+ObjectSet::ObjectSet(std::vector<std::uint8_t> flags)
+{
+  for (std::uint8_t &flag : flags) {
+    flag = flag != 0 ? 1 : 0;
+  }
+  while (!flags.empty() && flags.back() == 0) {
+    flags.pop_back();
+  }
+  if (!flags.empty()) {
+    flags_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(flags));
+  }
+}
+
+bool ObjectSet::operator==(const ObjectSet &other) const
+{
+  return flags_ == other.flags_ || (flags_ && other.flags_ && *flags_ == *other.flags_);
+}
+
+View View::with_hidden(ObjectSet hidden) const
+{
+  View view = *this;
+  view.hidden_ = std::move(hidden);
+  return view;
+}
+
+View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens, ObjectSet hidden)
     : view_from_world_(view_from_world),
       clip_from_view_(clip_from_view),
       clip_from_world_(clip_from_view * view_from_world),
-      lens_(lens)
+      lens_(lens),
+      hidden_(std::move(hidden))
 {
   const glm::mat4 rows = glm::transpose(clip_from_world_);
   // Gribb and Hartmann 2001, for reversed z in [0, w]: a point is inside the near plane if z <= w, and inside the far

@@ -6,7 +6,10 @@
 #include <glm/vec4.hpp>
 
 #include <array>
+#include <cstdint>
 #include <limits>
+#include <memory>
+#include <vector>
 
 namespace gnomon::draw {
 
@@ -45,7 +48,34 @@ struct Lens {
   bool operator==(const Lens &) const = default;
 };
 
-/** Position, direction, projection and lens from which a pass is drawn. */
+/** Index of an object in `object_block`. Calls pass it to the vertex shader. */
+using ObjectIndex = std::uint32_t;
+
+/** A set of objects of an ObjectBuffer. Copies share its memory. */
+class ObjectSet {
+ public:
+  ObjectSet() = default;
+  /** \a flags: by index, not 0 for the objects of the set. Other indices are not in the set. */
+  explicit ObjectSet(std::vector<std::uint8_t> flags);
+
+  [[nodiscard]] bool contains(ObjectIndex object) const
+  {
+    return flags_ && object < flags_->size() && (*flags_)[object] != 0;
+  }
+  /** Greater than all indices in the set; 0: it is empty. */
+  [[nodiscard]] ObjectIndex index_end() const
+  {
+    return flags_ ? ObjectIndex(flags_->size()) : 0;
+  }
+  /** Whether both have the same objects. */
+  bool operator==(const ObjectSet &other) const;
+
+ private:
+  /** The last element is not 0. nullptr: the set is empty. */
+  std::shared_ptr<const std::vector<std::uint8_t>> flags_;
+};
+
+/** Position, direction, projection and lens from which a pass is drawn, and the objects that are left out. */
 class View {
  public:
   View() : View(glm::mat4(1.0F), glm::mat4(1.0F)) {}
@@ -53,7 +83,7 @@ class View {
    * View space looks along -Z. \a clip_from_view maps the near plane to z = w and the far plane to z = 0 (reversed
    * depth). \pre both matrices are finite
    */
-  View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens = {});
+  View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens = {}, ObjectSet hidden = {});
 
   [[nodiscard]] const glm::mat4 &view_from_world() const
   {
@@ -67,6 +97,16 @@ class View {
   {
     return clip_from_world_;
   }
+  /**
+   * The objects that pictures of this view do not show, as if they were outside of the frustum. Light and shadows of a
+   * picture are those of the whole scene.
+   */
+  [[nodiscard]] const ObjectSet &hidden() const
+  {
+    return hidden_;
+  }
+  /** The same view of other objects. */
+  [[nodiscard]] View with_hidden(ObjectSet hidden) const;
   [[nodiscard]] bool is_perspective() const
   {
     return clip_from_view_[3][3] == 0.0F;
@@ -99,6 +139,7 @@ class View {
   glm::mat4 clip_from_world_;
   Lens lens_;
   std::array<glm::vec4, 6> frustum_planes_ws_;
+  ObjectSet hidden_;
 };
 
 /**

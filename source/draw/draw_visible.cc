@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw_visible.hh"
 
+#include <algorithm>
+
 namespace gnomon::draw {
 
 // It calculates as View::touches, without branches and with all planes in local variables, so that the compiler tests
@@ -33,6 +35,10 @@ void VisibleObjects::update(const View &view, const ObjectBuffer &objects)
     return;
   }
   test_volumes(view.culling_planes(), objects.culling_arrays(), is_visible_);
+  const ObjectIndex hidden_end = std::min(view.hidden().index_end(), objects.index_end());
+  for (ObjectIndex object = 0; object < hidden_end; object++) {
+    is_visible_[object] = view.hidden().contains(object) ? 0 : is_visible_[object];
+  }
   view_ = view;
   objects_ = &objects;
   objects_revision_ = objects.revision();

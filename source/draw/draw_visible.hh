@@ -21,7 +21,10 @@ class VisibleObjects {
   /** Test all objects, unless the view and the objects are those of the last update. */
   void update(const View &view, const ObjectBuffer &objects);
 
-  /** As View::touches with the volume of the object. True for indices that did not exist at the last update. */
+  /**
+   * As View::touches with the volume of the object, unless it is in View::hidden. True for indices that did not exist
+   * at the last update.
+   */
   [[nodiscard]] bool contains(ObjectIndex object) const
   {
     return object >= is_visible_.size() || is_visible_[object] != 0;

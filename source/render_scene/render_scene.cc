@@ -75,6 +75,42 @@ void RenderScene::set_host_texture(scene::Handle<scene::Image> handle, const std
   has_host_calls_ = true;
 }
 
+std::vector<std::uint8_t> RenderScene::flags_of(std::span<const scene::Handle<scene::Node>> nodes) const
+{
+  std::vector<std::uint8_t> flags(objects_.index_end());
+  std::vector<scene::Handle<scene::Node>> left(nodes.begin(), nodes.end());
+  while (!left.empty()) {
+    const scene::Handle<scene::Node> node = left.back();
+    left.pop_back();
+    if (!scene_.nodes().is_live(node)) {
+      continue;
+    }
+    if (node.index < node_objects_.size() && node_objects_[node.index].node == node) {
+      for (draw::ObjectIndex index = node_objects_[node.index].first; index != draw::object_identity;
+           index = next_of_node_[index]) {
+        flags[index] = 1;
+      }
+    }
+    for (scene::Handle<scene::Node> child = scene_.first_child(node); child; child = scene_.next_sibling(child)) {
+      left.push_back(child);
+    }
+  }
+  return flags;
+}
+
+draw::ObjectSet RenderScene::hidden_objects(std::span<const scene::Handle<scene::Node>> hidden,
+                                            std::span<const scene::Handle<scene::Node>> isolated) const
+{
+  std::vector<std::uint8_t> flags = flags_of(hidden);
+  if (!isolated.empty()) {
+    const std::vector<std::uint8_t> shown = flags_of(isolated);
+    for (draw::ObjectIndex index = draw::object_identity + 1; index < flags.size(); index++) {
+      flags[index] |= std::uint8_t(1 - shown[index]);
+    }
+  }
+  return draw::ObjectSet(std::move(flags));
+}
+
 void RenderScene::remove_objects(NodeObjects &entry)
 {
   while (entry.first != draw::object_identity) {

@@ -133,6 +133,13 @@ class RenderScene {
   {
     return render_objects_[index];
   }
+  /**
+   * The objects that a viewport leaves out, for draw::View::with_hidden: those of the nodes \a hidden and their
+   * descendants; and, unless \a isolated is empty, all that are not of \a isolated or their descendants. Nodes that
+   * were removed are skipped. As the last update() found the objects: call it for each view after an update.
+   */
+  [[nodiscard]] draw::ObjectSet hidden_objects(std::span<const scene::Handle<scene::Node>> hidden,
+                                               std::span<const scene::Handle<scene::Node>> isolated = {}) const;
   /** Bounding box of all objects, relative to origin_ws(). */
   [[nodiscard]] const scene::Bounds &bounds() const
   {
@@ -225,6 +232,8 @@ class RenderScene {
   /** Whether the node's objects show the meshes `shown_`. */
   [[nodiscard]] bool has_shown(const NodeObjects &entry, scene::Handle<scene::Node> node) const;
   void remove_objects(NodeObjects &entry);
+  /** By object index: 1 for the objects of \a nodes and their descendants. */
+  [[nodiscard]] std::vector<std::uint8_t> flags_of(std::span<const scene::Handle<scene::Node>> nodes) const;
   void update_objects();
   void update_node(scene::Handle<scene::Node> handle, const scene::Node &node, bool is_anew);
   /** \a index: the object to change; object_identity adds an object. \return the index of the object */

@@ -225,6 +225,7 @@ void App::show_document(scene::Scene scene)
   document_.reset();
   document_ = std::make_unique<Document>(window_.device(), std::move(scene), settings);
   for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
+    viewport->show_all();
     viewport->look_at(*document_);
   }
   const std::string &path = document_->scene().path;

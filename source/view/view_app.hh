@@ -133,6 +133,11 @@ class App {
   /** \return false if no node is selected; a message says so */
   bool remove_selected();
   bool duplicate_selected();
+  /** Leave the selected nodes out of the active viewport, or all others. A message says if none is selected. */
+  void hide_selected();
+  void isolate_selected();
+  /** Select through objects in the active viewport, or what is seen. */
+  void toggle_reach();
   /**
    * Start fly mode: keys and pointer move the eye of the active viewport until Enter, Escape or a mouse button ends it.
    */

@@ -85,6 +85,31 @@ bool App::duplicate_selected()
   return is_duplicated;
 }
 
+void App::hide_selected()
+{
+  if (!document_ || document_->selection().empty()) {
+    message("Nothing is selected", false);
+    return;
+  }
+  active().hide(*document_);
+}
+
+void App::isolate_selected()
+{
+  if (!document_ || (!active().is_isolated() && document_->selection().empty())) {
+    message("Nothing is selected", false);
+    return;
+  }
+  active().isolate(*document_);
+}
+
+void App::toggle_reach()
+{
+  const bool is_through = active().reach == overlay::Reach::Through;
+  active().reach = is_through ? overlay::Reach::Visible : overlay::Reach::Through;
+  message(is_through ? "An area selects what is seen" : "An area selects also what is hidden", false);
+}
+
 void App::begin_fly()
 {
   if (document_) {

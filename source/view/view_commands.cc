@@ -150,11 +150,14 @@ void frame(App &app, Words words)
 
 void select(App &app, Words words)
 {
-  const scene::Handle<scene::Node> node = document(app).find(words[0]);
-  if (!node) {
-    throw std::runtime_error(fmt::format("{}: has no node '{}'", app.document()->scene().path, words[0]));
+  std::vector<scene::Handle<scene::Node>> nodes;
+  for (const std::string &word : words) {
+    nodes.push_back(document(app).find(word));
+    if (!nodes.back()) {
+      throw std::runtime_error(fmt::format("{}: has no node '{}'", app.document()->scene().path, word));
+    }
   }
-  app.document()->selected = node;
+  app.document()->select(nodes);
 }
 
 void pick(App &app, Words words)
@@ -162,12 +165,54 @@ void pick(App &app, Words words)
   drawn_viewport(app).pick(document(app), pixel(words[0], words[1]));
 }
 
+void select_box(App &app, Words words)
+{
+  const auto from = glm::dvec2(pixel(words[0], words[1]));
+  const auto to = glm::dvec2(pixel(words[2], words[3]));
+  drawn_viewport(app).select_area(document(app), overlay::rectangle(from, to), app.active().reach, false);
+}
+
+void select_lasso(App &app, Words words)
+{
+  if (words.size() % 2 != 0) {
+    throw std::runtime_error("usage: lasso X Y X Y X Y...");
+  }
+  std::vector<glm::dvec2> path;
+  for (std::size_t i = 0; i < words.size(); i += 2) {
+    path.emplace_back(pixel(words[i], words[i + 1]));
+  }
+  drawn_viewport(app).select_area(document(app), path, app.active().reach, false);
+}
+
 void expect_selected(App &app, Words words)
 {
-  const scene::Node *node = document(app).scene().nodes().find(app.document()->selected);
-  const std::string name = node ? node->name : "";
+  std::vector<std::string> names;
+  for (const scene::Handle<scene::Node> node : document(app).selection()) {
+    names.push_back(document(app).scene().nodes()[node].name);
+  }
+  std::vector<std::string> expected(words.begin(), words.end());
+  std::ranges::sort(names);
+  std::ranges::sort(expected);
+  if (names != expected) {
+    throw std::runtime_error(fmt::format("'{}' is selected", fmt::join(names, "', '")));
+  }
+}
+
+void expect_triangle(App &app, Words words)
+{
+  const overlay::Hit *hit = document(app).clicked();
+  const std::string met = hit && hit->triangle ? fmt::format("{}", hit->triangle->index) : "";
+  if (met != (words.empty() ? "" : words[0])) {
+    throw std::runtime_error(fmt::format("triangle '{}' was clicked", met));
+  }
+}
+
+void expect_inside(App &app, Words words)
+{
+  const auto node = drawn_viewport(app).dark_inside();
+  const std::string name = node ? document(app).scene().nodes()[*node].name : "";
   if (name != (words.empty() ? "" : words[0])) {
-    throw std::runtime_error(fmt::format("'{}' is selected", name));
+    throw std::runtime_error(fmt::format("all that is seen is the dark back of '{}'", name));
   }
 }
 
@@ -434,9 +479,13 @@ constexpr std::array commands = std::to_array<Command>({
     {"fly", "RIGHT UP FORWARD", 3, 3, Need::Nothing, fly},
     {"turn", "DEGREES DEGREES", 2, 2, Need::Nothing, turn},
     {"frame", "[all]", 0, 1, Need::Nothing, frame},
-    {"select", "NODE", 1, 1, Need::Nothing, select},
+    {"select", "NODE...", 1, any, Need::Nothing, select},
     {"pick", "X Y", 2, 2, Need::Nothing, pick},
-    {"selected", "[NODE]", 0, 1, Need::Nothing, expect_selected},
+    {"box", "X Y TO_X TO_Y", 4, 4, Need::Nothing, select_box},
+    {"lasso", "X Y X Y X Y...", 6, any, Need::Nothing, select_lasso},
+    {"selected", "[NODE...]", 0, any, Need::Nothing, expect_selected},
+    {"triangle", "[INDEX]", 0, 1, Need::Nothing, expect_triangle},
+    {"inside", "[NODE]", 0, 1, Need::Nothing, expect_inside, true},
     {"set", "PROPERTY VALUE...", 2, 4, Need::Nothing, set},
     {"undo", "", 0, 0, Need::Nothing, undo},
     {"redo", "", 0, 0, Need::Nothing, redo},
@@ -457,7 +506,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"wait", "", 0, 0, Need::Pictures, wait},
     {"until", "TEXT", 1, 1, Need::Message, wait},
     {"screenshot", "FILE", 1, 1, Need::Frame, save_screenshot},
-    {"picture", "FILE", 1, 1, Need::Nothing, save_picture},
+    {"picture", "FILE", 1, 1, Need::Nothing, save_picture, true},
     {"stay", "", 0, 0, Need::Nothing, stay},
     {"close", "", 0, 0, Need::Frame, close},
     {"quit", "", 0, 0, Need::Frame, quit},

@@ -26,6 +26,8 @@ struct Command {
   Need need;
   /** \throws std::exception with the reason if the command fails */
   void (*run)(App &app, Words words);
+  /** It first waits as for Need::Pictures, so that it shows what the commands before it asked for. */
+  bool is_after_pictures = false;
 };
 
 /** nullptr: no command has that name. */

@@ -8,9 +8,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
+#include <unordered_set>
 
 namespace gnomon::view {
 
@@ -142,15 +145,45 @@ void Document::set_settings(const WindowSettings &settings)
   }
 }
 
+void Document::select(std::span<const scene::Handle<scene::Node>> nodes, bool adds)
+{
+  const std::vector<scene::Handle<scene::Node>> before = adds ? selection() : std::vector<scene::Handle<scene::Node>>();
+  std::vector<scene::Handle<scene::Node>> all(nodes.begin(), nodes.end());
+  std::ranges::copy_if(before, std::back_inserter(all),
+                       [&](auto node) { return std::ranges::find(nodes, node) == nodes.end(); });
+  selected = all.empty() ? scene::Handle<scene::Node>() : all.front();
+  others_.assign(all.begin() + (all.empty() ? 0 : 1), all.end());
+}
+
+std::vector<scene::Handle<scene::Node>> Document::selection() const
+{
+  std::vector<scene::Handle<scene::Node>> nodes = {selected};
+  std::ranges::copy_if(others_, std::back_inserter(nodes), [&](auto node) { return node != selected; });
+  std::erase_if(nodes, [&](auto node) { return !scene_.nodes().is_live(node); });
+  return nodes;
+}
+
+bool Document::is_selected(scene::Handle<scene::Node> node) const
+{
+  return node == selected || std::ranges::find(others_, node) != others_.end();
+}
+
+void Document::click(const std::optional<overlay::Hit> &hit, bool adds)
+{
+  select(hit ? hit->node : scene::Handle<scene::Node>(), adds);
+  clicked_ = hit;
+  clicked_revision_ = scene_.revision();
+}
+
 std::vector<scene::Handle<scene::Node>> Document::selected_nodes() const
 {
-  std::vector<scene::Handle<scene::Node>> nodes;
-  if (scene_.nodes().is_live(selected)) {
-    nodes.push_back(selected);
-  }
+  std::vector<scene::Handle<scene::Node>> nodes = selection();
+  std::unordered_set<scene::Handle<scene::Node>> known(nodes.begin(), nodes.end());
   for (std::size_t i = 0; i < nodes.size(); i++) {
     for (scene::Handle<scene::Node> child = scene_.first_child(nodes[i]); child; child = scene_.next_sibling(child)) {
-      nodes.push_back(child);
+      if (known.insert(child).second) {
+        nodes.push_back(child);
+      }
     }
   }
   return nodes;

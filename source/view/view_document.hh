@@ -9,11 +9,13 @@
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"
+#include "overlay.hh"
 #include "render_scene.hh"
 
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,9 +66,11 @@ class Document {
     return history_;
   }
 
+  /** Show or hide the selected nodes, as an edit of the scene: all as `selected` is not. */
+  void toggle_visibility();
   /** Add a node and select it. \see view::add */
   void add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view);
-  /** Remove the selected node and its descendants. \return false if no node is selected */
+  /** Remove the selected nodes and their descendants, as one undo step. \return false if no node is selected */
   bool remove_selected();
   /** Duplicate the selected node and select the copy. \return false if no node is selected */
   bool duplicate_selected();
@@ -143,9 +147,29 @@ class Document {
     return settings_revision_;
   }
 
-  /** Invalid handle: no node is selected. */
+  /** The node that panels, gizmo, transforms and duplicates are of. Invalid handle: no node is selected. */
   scene::Handle<scene::Node> selected{};
-  /** The selected node and its descendants. */
+  /**
+   * Select \a nodes, of which the first becomes `selected`. \a adds: beside those that are selected; otherwise in place
+   * of them.
+   */
+  void select(std::span<const scene::Handle<scene::Node>> nodes, bool adds = false);
+  void select(scene::Handle<scene::Node> node, bool adds = false)
+  {
+    select(std::span(&node, node ? 1 : 0), adds);
+  }
+  /** `selected` and the nodes that are selected beside it; those that were removed are left out. */
+  [[nodiscard]] std::vector<scene::Handle<scene::Node>> selection() const;
+  [[nodiscard]] bool is_selected(scene::Handle<scene::Node> node) const;
+  /** Select what a click in a picture met: a surface; empty: nothing. \a adds: \see select */
+  void click(const std::optional<overlay::Hit> &hit, bool adds = false);
+  /** What the last click met. nullptr: no surface of the selected node, or the scene has changed since. */
+  [[nodiscard]] const overlay::Hit *clicked() const
+  {
+    const bool is_shown = clicked_ && clicked_->node == selected && clicked_revision_ == scene_.revision();
+    return is_shown ? &*clicked_ : nullptr;
+  }
+  /** The selected nodes and their descendants, each once. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_nodes() const;
   /** Bounding box of the selected nodes; a lamp counts as a point. Without a selection: of the scene. */
   [[nodiscard]] scene::Bounds selected_bounds() const;
@@ -170,6 +194,11 @@ class Document {
   /** The time of the last write of the file of each surface function. */
   std::map<scene::Handle<scene::SurfaceFunction>, std::filesystem::file_time_type> function_times_;
   scene::Revision saved_revision_ = 0;
+  /** Nodes that are selected beside `selected`. */
+  std::vector<scene::Handle<scene::Node>> others_;
+  std::optional<overlay::Hit> clicked_;
+  /** scene::Scene::revision at the last click. */
+  scene::Revision clicked_revision_ = 0;
 };
 
 }  // namespace gnomon::view

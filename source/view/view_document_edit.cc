@@ -33,7 +33,9 @@ bool Document::undo()
 {
   const bool is_undone = history_.undo(scene_);
   deform();
-  selected = history_.restored() ? history_.restored() : selected;
+  if (history_.restored()) {
+    select(history_.restored());
+  }
   return is_undone;
 }
 
@@ -41,25 +43,46 @@ bool Document::redo()
 {
   const bool is_redone = history_.redo(scene_);
   deform();
-  selected = history_.restored() ? history_.restored() : selected;
+  if (history_.restored()) {
+    select(history_.restored());
+  }
   return is_redone;
+}
+
+void Document::toggle_visibility()
+{
+  const std::vector<scene::Handle<scene::Node>> nodes = selection();
+  if (nodes.empty()) {
+    return;
+  }
+  const bool is_visible = !scene_.nodes()[nodes.front()].is_visible;
+  history_.join([&] {
+    for (const scene::Handle<scene::Node> node : nodes) {
+      edit(node, [&](scene::Node &edited) { edited.is_visible = is_visible; });
+    }
+  });
 }
 
 void Document::add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view)
 {
-  selected = view::add(scene_, addition, position_ws, world_from_view);
+  select(view::add(scene_, addition, position_ws, world_from_view));
   history_.note_added(scene_, selected);
 }
 
 bool Document::remove_selected()
 {
-  if (!scene_.nodes().is_live(selected)) {
-    return false;
-  }
-  history_.remove(scene_, selected);
+  const std::vector<scene::Handle<scene::Node>> nodes = selection();
+  history_.join([&] {
+    for (const scene::Handle<scene::Node> node : nodes) {
+      // It may be gone with an ancestor.
+      if (scene_.nodes().is_live(node)) {
+        history_.remove(scene_, node);
+      }
+    }
+  });
   deform();
-  selected = {};
-  return true;
+  select(scene::Handle<scene::Node>());
+  return !nodes.empty();
 }
 
 bool Document::duplicate_selected()
@@ -67,7 +90,7 @@ bool Document::duplicate_selected()
   if (!scene_.nodes().is_live(selected)) {
     return false;
   }
-  selected = duplicate(scene_, selected);
+  select(duplicate(scene_, selected));
   history_.note_added(scene_, selected);
   return true;
 }

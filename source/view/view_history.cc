@@ -68,12 +68,14 @@ void History::restore_members(scene::Scene &scene, const SubtreeChange &change)
   }
 }
 
-void History::add(Change change)
+void History::add(Content content)
 {
   changes_.erase(changes_.begin() + std::ptrdiff_t(done_count_), changes_.end());
-  changes_.push_back(std::move(change));
+  changes_.push_back({std::move(content), joined_from_ && *joined_from_ < done_count_});
   if (changes_.size() > change_max) {
     changes_.pop_front();
+    changes_.front().is_joined = false;
+    joined_from_ = joined_from_ ? std::optional(std::max<std::size_t>(*joined_from_, 1) - 1) : std::nullopt;
   }
   done_count_ = changes_.size();
   is_in_gesture_ = true;
@@ -81,7 +83,7 @@ void History::add(Change change)
 
 void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
 {
-  if (const auto *subtree = std::get_if<SubtreeChange>(&changes_[index])) {
+  if (const auto *subtree = std::get_if<SubtreeChange>(&changes_[index].content)) {
     if (subtree->is_addition == is_undone) {
       remove_members(scene, *subtree);
     }
@@ -99,7 +101,7 @@ void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
           scene.set_world(is_undone ? one.before : one.after);
         }
       },
-      changes_[index]);
+      changes_[index].content);
 }
 
 void History::revert_gesture(scene::Scene &scene)
@@ -116,8 +118,10 @@ bool History::undo(scene::Scene &scene)
   if (done_count_ == 0) {
     return false;
   }
-  apply(scene, done_count_ - 1, true);
-  done_count_--;
+  do {
+    apply(scene, done_count_ - 1, true);
+    done_count_--;
+  } while (changes_[done_count_].is_joined);
   is_in_gesture_ = false;
   return true;
 }
@@ -128,8 +132,10 @@ bool History::redo(scene::Scene &scene)
   if (done_count_ == changes_.size()) {
     return false;
   }
-  apply(scene, done_count_, false);
-  done_count_++;
+  do {
+    apply(scene, done_count_, false);
+    done_count_++;
+  } while (done_count_ < changes_.size() && changes_[done_count_].is_joined);
   is_in_gesture_ = false;
   return true;
 }

@@ -45,6 +45,22 @@ class History {
   void note_added(const scene::Scene &scene, scene::Handle<scene::Node> root);
   /** Remove \a root with its descendants. Their lamps, cameras and meshes stay in the scene. */
   void remove(scene::Scene &scene, scene::Handle<scene::Node> root);
+  /** What \a work changes is one undo step. */
+  template <std::invocable Work>
+  void join(Work &&work)
+  {
+    end_gesture();
+    joined_from_ = done_count_;
+    try {
+      work();
+    }
+    catch (...) {
+      joined_from_.reset();
+      throw;
+    }
+    joined_from_.reset();
+    end_gesture();
+  }
   /** End a gesture. Edits of one thing within a gesture, as by a slider, are one undo step. */
   void end_gesture()
   {
@@ -94,17 +110,22 @@ class History {
     /** The change added the nodes. False: it removed them. */
     bool is_addition = false;
   };
-  using Change = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Camera>,
-                              ThingChange<scene::Material>, WorldChange, SubtreeChange>;
+  using Content = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Camera>,
+                               ThingChange<scene::Material>, WorldChange, SubtreeChange>;
+  struct Change {
+    Content content;
+    /** It is undone and redone with the change before it. */
+    bool is_joined = false;
+  };
 
   /** The last change if it is of type \a Kind and belongs to the current gesture; otherwise nullptr. */
   template <typename Kind>
   Kind *mergeable()
   {
     const bool is_last = is_in_gesture_ && done_count_ > 0 && done_count_ == changes_.size();
-    return is_last ? std::get_if<Kind>(&changes_.back()) : nullptr;
+    return is_last ? std::get_if<Kind>(&changes_.back().content) : nullptr;
   }
-  void add(Change change);
+  void add(Content content);
   void apply(scene::Scene &scene, std::size_t index, bool is_undone);
   [[nodiscard]] static SubtreeChange subtree(const scene::Scene &scene, scene::Handle<scene::Node> root);
   static void remove_members(scene::Scene &scene, const SubtreeChange &change);
@@ -114,6 +135,8 @@ class History {
   /** Number of changes that are applied; the later ones were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
+  /** During join: the number of changes before it. */
+  std::optional<std::size_t> joined_from_;
   scene::Handle<scene::Node> restored_{};
 };
 

@@ -159,7 +159,8 @@ void add_camera(const Place &place, const scene::PlacedCamera &camera)
 }  // namespace
 
 std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMap &map,
-                                      scene::Handle<scene::Node> selected)
+                                      scene::Handle<scene::Node> selected,
+                                      const std::function<bool(scene::Handle<scene::Node>)> &is_shown)
 {
   std::vector<overlay::Line> lines;
   const auto brush = [&](scene::Handle<scene::Node> node, const glm::vec4 &color) {
@@ -167,6 +168,9 @@ std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMa
     return LineBrush{lines, is_selected ? selected_color : color, 1.5F, is_selected};
   };
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
+    if (!is_shown(lamp.node)) {
+      continue;
+    }
     const Place place{brush(lamp.node, lamp_color), map, lamp.world_from_lamp};
     switch (lamp.kind) {
       case scene::LampKind::Point: add_point(place, lamp); break;
@@ -179,7 +183,7 @@ std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMa
   for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
     // Leave out a camera at the eye, where the size of a pixel is nearly 0.
     const glm::dvec3 position_ws(camera.world_from_camera[3]);
-    if (scene.is_visible(camera.node) && map.metres_per_pixel(position_ws) > 1e-6) {
+    if (scene.is_visible(camera.node) && is_shown(camera.node) && map.metres_per_pixel(position_ws) > 1e-6) {
       add_camera({brush(camera.node, camera_color), map, camera.world_from_camera}, camera);
     }
   }

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int ctrl = GLFW_MOD_CONTROL;
 constexpr int shift = GLFW_MOD_SHIFT;
+constexpr int alt = GLFW_MOD_ALT;
 
 struct NamedKey {
   std::string_view name;
@@ -24,6 +25,7 @@ struct NamedKey {
 
 /** Names of keys other than letters and digits. */
 constexpr std::array named_keys = std::to_array<NamedKey>({{".", GLFW_KEY_PERIOD},
+                                                           {"/", GLFW_KEY_SLASH},
                                                            {"-", GLFW_KEY_MINUS},
                                                            {"`", GLFW_KEY_GRAVE_ACCENT},
                                                            {"enter", GLFW_KEY_ENTER},
@@ -34,6 +36,7 @@ constexpr std::array named_keys = std::to_array<NamedKey>({{".", GLFW_KEY_PERIOD
 
 /** Keys of the number block, and their equivalents. */
 constexpr std::array block_keys = std::to_array<std::pair<int, int>>({{GLFW_KEY_KP_DECIMAL, GLFW_KEY_PERIOD},
+                                                                      {GLFW_KEY_KP_DIVIDE, GLFW_KEY_SLASH},
                                                                       {GLFW_KEY_KP_SUBTRACT, GLFW_KEY_MINUS},
                                                                       {GLFW_KEY_KP_ENTER, GLFW_KEY_ENTER}});
 
@@ -65,9 +68,8 @@ void transform(App &app)
 
 void toggle_visibility(App &app)
 {
-  Document *document = app.document();
-  if (document && document->scene().nodes().is_live(document->selected)) {
-    document->edit(document->selected, [](scene::Node &node) { node.is_visible = !node.is_visible; });
+  if (Document *document = app.document()) {
+    document->toggle_visibility();
   }
 }
 
@@ -88,6 +90,10 @@ const std::array bindings = std::to_array<Binding>({
     {{GLFW_KEY_PERIOD, 0}, [](App &app) { app.frame(false); }},
     {{GLFW_KEY_HOME, 0}, [](App &app) { app.frame(true); }},
     {{GLFW_KEY_H, 0}, toggle_visibility},
+    {{GLFW_KEY_H, shift}, [](App &app) { app.hide_selected(); }},
+    {{GLFW_KEY_H, alt}, [](App &app) { app.active().show_all(); }},
+    {{GLFW_KEY_SLASH, 0}, [](App &app) { app.isolate_selected(); }},
+    {{GLFW_KEY_Z, alt}, [](App &app) { app.toggle_reach(); }},
     {{GLFW_KEY_G, 0}, transform<TransformKind::Move>},
     {{GLFW_KEY_R, 0}, transform<TransformKind::Rotate>},
     {{GLFW_KEY_S, 0}, transform<TransformKind::Scale>},
@@ -111,7 +117,8 @@ std::optional<KeyPress> key_of(std::string_view name)
   KeyPress press;
   for (bool has_prefix = true; has_prefix;) {
     has_prefix = false;
-    for (const auto &[prefix, mod] : {std::pair<std::string_view, int>{"ctrl+", ctrl}, {"shift+", shift}}) {
+    for (const auto &[prefix, mod] :
+         {std::pair<std::string_view, int>{"ctrl+", ctrl}, {"shift+", shift}, {"alt+", alt}}) {
       if (name.starts_with(prefix)) {
         press.mods |= mod;
         name.remove_prefix(prefix.size());
@@ -137,7 +144,7 @@ std::optional<KeyPress> key_of(std::string_view name)
 
 void run_key(App &app, const KeyPress &press)
 {
-  const KeyPress wanted{without_block(press.key), press.mods & (ctrl | shift | GLFW_MOD_ALT)};
+  const KeyPress wanted{without_block(press.key), press.mods & (ctrl | shift | alt)};
   const auto found = std::ranges::find(bindings, wanted, &Binding::press);
   if (found != bindings.end()) {
     found->run(app);

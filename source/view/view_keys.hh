@@ -11,8 +11,8 @@ namespace gnomon::view {
 class App;
 
 /**
- * The key with a name as in menus: a letter, a digit, '.', '-', '`', or enter, escape, delete, backspace, home, with
- * the optional prefixes "ctrl+" and "shift+". Empty: no such key.
+ * The key with a name as in menus: a letter, a digit, '.', '/', '-', '`', or enter, escape, delete, backspace, home,
+ * with the optional prefixes "ctrl+", "shift+" and "alt+". Empty: no such key.
  */
 [[nodiscard]] std::optional<KeyPress> key_of(std::string_view name);
 

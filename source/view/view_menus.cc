@@ -110,6 +110,20 @@ void App::show_view_menu()
   if (ImGui::MenuItem("Fly", "F")) {
     begin_fly();
   }
+  ImGui::Separator();
+  if (ImGui::MenuItem("Isolate selected", "/")) {
+    isolate_selected();
+  }
+  if (ImGui::MenuItem("Hide selected here", "Shift+H")) {
+    hide_selected();
+  }
+  if (ImGui::MenuItem("Show all here", "Alt+H", false, active().is_hiding())) {
+    active().show_all();
+  }
+  if (ImGui::MenuItem("Select through objects", "Alt+Z", active().reach == overlay::Reach::Through)) {
+    toggle_reach();
+  }
+  ImGui::Separator();
   ImGui::MenuItem("Lamps, cameras and gizmo", nullptr, &active().has_overlays);
 }
 

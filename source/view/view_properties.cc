@@ -15,6 +15,14 @@
 
 namespace gnomon::view {
 
+double shown_number(double value, std::string_view unit)
+{
+  constexpr double steps = 1e4;
+  const double shown = unit == "°" ? std::round(value * steps) / steps : value;
+  // Adding 0 turns -0 into 0.
+  return shown + 0.0;
+}
+
 Placement placement_of(const glm::dmat4 &parent_from_node)
 {
   glm::dmat3 axes(parent_from_node);

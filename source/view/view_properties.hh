@@ -9,6 +9,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /** The editable properties of things, as tables: panels show them, and scripts set them by name. */
@@ -18,6 +19,12 @@ struct Limits {
   double min = 0.0;
   double max = 0.0;
 };
+
+/**
+ * The number that a field shows for a value. The nearest multiple of 0.0001 for angles, which are degrees: smaller
+ * parts are the rounding of matrices, and would be shown as 1.84e-05. -0 is 0.
+ */
+[[nodiscard]] double shown_number(double value, std::string_view unit);
 
 /** A property of one or three numbers, in the units of the user interface. */
 template <typename T>

@@ -83,8 +83,7 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   std::array<double, 3> values{};
   double largest = 0.0;
   for (int i = 0; i < property.width; i++) {
-    // Adding 0 turns -0 into 0.
-    values[std::size_t(i)] = property.get(thing, i) + 0.0;
+    values[std::size_t(i)] = shown_number(property.get(thing, i), property.unit(thing));
     largest = std::max(largest, std::abs(values[std::size_t(i)]));
   }
   const std::array<double, 3> before = values;

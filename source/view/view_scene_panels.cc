@@ -69,7 +69,7 @@ void SceneTree::show_node(Document &document, scene::Handle<scene::Node> handle)
   const bool is_leaf = !scene.first_child(handle) || *filter_ != '\0';
   const ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
                                    ImGuiTreeNodeFlags_DefaultOpen |
-                                   (handle == document.selected ? ImGuiTreeNodeFlags_Selected : 0) |
+                                   (document.is_selected(handle) ? ImGuiTreeNodeFlags_Selected : 0) |
                                    (is_leaf ? ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen : 0);
   const bool is_shown = scene.is_visible(handle);
   if (!is_shown) {
@@ -80,7 +80,7 @@ void SceneTree::show_node(Document &document, scene::Handle<scene::Node> handle)
     ImGui::PopStyleColor();
   }
   if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) {
-    document.selected = handle;
+    document.select(handle, ImGui::GetIO().KeyShift);
   }
   ImGui::TableNextColumn();
   ImGui::TextDisabled("%s", kind_of(node));
@@ -199,6 +199,29 @@ void show_materials(Document &document, const std::vector<scene::Handle<scene::M
   }
 }
 
+/** Where the last click met the selected node. */
+void show_clicked(const Document &document)
+{
+  const overlay::Hit *hit = document.clicked();
+  if (!hit || !header("Clicked point###clicked")) {
+    return;
+  }
+  const glm::dvec3 &at = hit->position_ws;
+  ImGui::TextUnformatted(fmt::format("Position {:.4f}, {:.4f}, {:.4f} m", at.x, at.y, at.z).c_str());
+  if (!hit->triangle) {
+    return;
+  }
+  const overlay::TrianglePoint &point = *hit->triangle;
+  ImGui::TextWrapped("%s",
+                     fmt::format("Triangle {} of {}", point.index, document.scene().meshes()[hit->mesh].name).c_str());
+  ImGui::TextUnformatted(
+      fmt::format("Weights {:.3f}, {:.3f}, {:.3f}", point.barycentric.x, point.barycentric.y, point.barycentric.z)
+          .c_str());
+  ImGui::TextUnformatted(fmt::format("UV {:.4f}, {:.4f}", point.uv.x, point.uv.y).c_str());
+  ImGui::TextUnformatted(
+      fmt::format("Normal {:.3f}, {:.3f}, {:.3f}", point.normal_ws.x, point.normal_ws.y, point.normal_ws.z).c_str());
+}
+
 void show_selection(Document &document)
 {
   const scene::Handle<scene::Node> selected = document.selected;
@@ -211,6 +234,7 @@ void show_selection(Document &document)
   show_lamp(document, node.lamp);
   show_camera(document, node.camera);
   show_materials(document, node.meshes);
+  show_clicked(document);
 }
 
 bool show_world(Document &document)

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace gnomon::view {
 
@@ -60,19 +61,26 @@ void Script::step(App &app)
       awaited_.clear();
     }
   }
+  const auto wait_for_pictures = [&] {
+    frames_ = 2;
+    waits_ = true;
+  };
   while (frames_ == 0 && !waits_ && awaited_.empty() && next_ < lines_.size()) {
-    const ScriptLine &line = lines_[next_++];
+    const ScriptLine &line = lines_[next_];
+    const Command &command = *find_command(line.words[0]);
+    if (command.is_after_pictures && !std::exchange(has_waited_, true)) {
+      wait_for_pictures();
+      return;
+    }
+    has_waited_ = false;
+    next_++;
     try {
-      const Command &command = *find_command(line.words[0]);
       command.run(app, Words(line.words).subspan(1));
       switch (command.need) {
         case Need::Nothing: break;
         case Need::Frame: frames_ = 1; break;
         case Need::Pointer: frames_ = Window::drag_frames; break;
-        case Need::Pictures:
-          frames_ = 2;
-          waits_ = true;
-          break;
+        case Need::Pictures: wait_for_pictures(); break;
         case Need::Message: awaited_ = line.words[1]; break;
       }
     }

@@ -35,6 +35,8 @@ class Script {
   int frames_ = 0;
   /** Waits until all pictures are complete. */
   bool waits_ = false;
+  /** Has waited for the next command. \see Command::is_after_pictures */
+  bool has_waited_ = false;
   /** Text of the message to wait for. Empty: none. */
   std::string awaited_;
   /** Number of messages up to the last awaited one. */

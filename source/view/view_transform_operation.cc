@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view_transform_operation.hh"
 
+#include "view_properties.hh"
+
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -257,7 +259,8 @@ std::string TransformOperation::text() const
       const glm::dvec3 way = way_ws();
       return fmt::format("Move{}: {:.4g}, {:.4g}, {:.4g} m{}", where, way.x, way.y, way.z, cursor);
     }
-    case TransformKind::Rotate: return fmt::format("Rotate{}: {:.4g}°{}", where, angle() * 180.0 / pi, cursor);
+    case TransformKind::Rotate:
+      return fmt::format("Rotate{}: {:.4g}°{}", where, shown_number(angle() * 180.0 / pi, "°"), cursor);
     case TransformKind::Scale: break;
   }
   return fmt::format("Scale{}: {:.4g}{}", where, factor(), cursor);

@@ -30,6 +30,7 @@ void WindowViewport::close()
   error_.restart();
   is_complete_ = false;
   is_transforming_ = false;
+  area_.reset();
   fly.reset();
 }
 
@@ -85,7 +86,9 @@ WindowViewport::OverlayKey WindowViewport::overlay_key(Document &document) const
     hidden.selected = document.settings().has_texel_density ? document.selected : hidden.selected;
     return hidden;
   }
-  OverlayKey key{true, document.selected, document.gizmo, document.orientation, pointed_, {}};
+  OverlayKey key{true,      document.selected, document.selection(), hidden_,
+                 isolated_, document.gizmo,    document.orientation, pointed_,
+                 {}};
   if (document.operation()) {
     key.operation = document.operation()->transform();
   }
@@ -117,7 +120,11 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   const bool is_same = viewport_ && key == synced_;
   const bool is_synced = is_same && !has_failed_;
   follow(document);
-  const draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
+  draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
+  std::erase_if(isolated_, [&](auto node) { return !document.scene().nodes().is_live(node); });
+  if (!hidden_.empty() || !isolated_.empty()) {
+    view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated_));
+  }
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     return true;
@@ -169,7 +176,40 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   draw_overlays(document, target);
   has_failed_ = false;
   is_complete_ = !eevee || (!is_preview && eevee->is_complete(*viewport_));
+  if (eevee && is_complete_) {
+    look_around(*eevee);
+  }
   return is_complete_;
+}
+
+void WindowViewport::look_around(draw::Engine &engine)
+{
+  if (std::exchange(dark_picture_, viewport_->restart_count()) == viewport_->restart_count()) {
+    return;
+  }
+  dark_inside_.reset();
+  std::optional<scene::Handle<scene::Node>> inside;
+  for (const glm::dvec2 &place :
+       {glm::dvec2(0.5, 0.5), glm::dvec2(0.1, 0.1), glm::dvec2(0.9, 0.1), glm::dvec2(0.1, 0.9), glm::dvec2(0.9, 0.9)}) {
+    const glm::ivec2 pixel(place * glm::dvec2(size_px_));
+    const std::optional<overlay::Hit> hit = overlay_->pick(drawn_view_, size_px_, {pixel.x, size_px_.y - 1 - pixel.y});
+    const glm::dvec3 away_ws = map_.ray_through(glm::dvec2(pixel) + 0.5).direction_ws;
+    const bool is_back = hit && hit->triangle && glm::dot(glm::dvec3(hit->triangle->normal_ws), away_ws) > 0.0;
+    if (!is_back || (inside && *inside != hit->node)) {
+      return;
+    }
+    inside = hit->node;
+  }
+  draw::Engine *one = &engine;
+  const std::vector<float> radiance = read_written(
+      viewport_->device(), [&](const draw::Target &target) { viewport_->write(std::span(&one, 1), target); });
+  // The least step of a display of eight bits. Alpha counts as no light.
+  constexpr float black = 1.0F / (255.0F * 12.92F);
+  bool is_black = true;
+  for (std::size_t i = 0; i < radiance.size(); i++) {
+    is_black &= i % 4 == 3 || radiance[i] < black;
+  }
+  dark_inside_ = is_black ? inside : std::nullopt;
 }
 
 void WindowViewport::limit_time(const Document &document, eevee::Engine &eevee)
@@ -208,7 +248,8 @@ void WindowViewport::draw_overlays(Document &document, const draw::Target &targe
     return;
   }
   overlay_->draw_outline(drawn_view_, size_px_, document.selected_nodes(), outline_color, target);
-  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selected);
+  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selected,
+                                                [&](auto node) { return !is_hidden(document.scene(), node); });
   const std::optional<Gizmo> gizmo = gizmo_of(document);
   if (document.operation() || gizmo) {
     const auto more = document.operation() ? axis_lines(*document.operation(), map_) : gizmo->lines(map_, pointed_);

@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,32 @@ class WindowViewport {
    */
   bool show(Document &document, glm::vec2 size, bool is_active);
 
-  /** Select the node at a pixel, counted from the picture's upper left corner. \pre draw was called */
-  void pick(Document &document, glm::ivec2 pixel_px);
+  /**
+   * Select the node at a pixel, counted from the picture's upper left corner. \a adds: \see Document::select
+   * \pre draw was called
+   */
+  void pick(Document &document, glm::ivec2 pixel_px, bool adds = false);
+  /**
+   * Select the nodes in an area: what overlay::Overlay::select finds, and lamps and cameras. \a outline_px: pixels as
+   * for pick. \pre draw was called
+   */
+  void select_area(Document &document, std::span<const glm::dvec2> outline_px, overlay::Reach reach, bool adds);
+  /** Leave the selected nodes and their descendants out of this viewport's pictures. */
+  void hide(const Document &document);
+  /** Leave all but the selected nodes and their descendants out; the second call shows the others again. */
+  void isolate(const Document &document);
+  [[nodiscard]] bool is_isolated() const
+  {
+    return !isolated_.empty();
+  }
+  [[nodiscard]] bool is_hiding() const
+  {
+    return !isolated_.empty() || !hidden_.empty();
+  }
+  /** Undo hide and isolate. */
+  void show_all();
+  /** Whether the node is left out of this viewport. */
+  [[nodiscard]] bool is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const;
   /** Start to transform the selected node with the pointer. \pre draw was called \throws as TransformOperation */
   void begin_transform(Document &document, TransformKind kind);
   /**
@@ -88,6 +113,13 @@ class WindowViewport {
   {
     return error_.value();
   }
+  /**
+   * The node whose back is all that is seen in a black picture: the eye is likely inside of it. Empty: there is none.
+   */
+  [[nodiscard]] std::optional<scene::Handle<scene::Node>> dark_inside() const
+  {
+    return is_complete() && viewport_ && dark_picture_ == viewport_->restart_count() ? dark_inside_ : std::nullopt;
+  }
   /** The report of the last draw; nullptr: the draw had no budget. */
   [[nodiscard]] const eevee::BudgetReport *budget_report() const
   {
@@ -105,6 +137,8 @@ class WindowViewport {
   std::string engine = "eevee";
   /** Show lamps, cameras, the outline of the selected nodes, and the gizmo. */
   bool has_overlays = true;
+  /** Which nodes the pointer selects in an area. */
+  overlay::Reach reach = overlay::Reach::Visible;
 
  private:
   /** Background colour behind the picture. */
@@ -124,6 +158,10 @@ class WindowViewport {
   struct OverlayKey {
     bool is_shown = false;
     scene::Handle<scene::Node> selected{};
+    std::vector<scene::Handle<scene::Node>> selection{};
+    /** Nodes that are left out; those without objects have no part in the view. */
+    std::vector<scene::Handle<scene::Node>> hidden{};
+    std::vector<scene::Handle<scene::Node>> isolated{};
     std::optional<TransformKind> gizmo{};
     Orientation orientation = Orientation::World;
     std::optional<TransformAxis> pointed{};
@@ -151,6 +189,8 @@ class WindowViewport {
   void limit_time(const Document &document, eevee::Engine &eevee);
   /** With a maximum error: end a picture that has reached it, or that has all its samples. */
   void limit_error(const Document &document, eevee::Engine &eevee);
+  /** Update dark_inside for a complete picture by \a engine. */
+  void look_around(draw::Engine &engine);
   /** Read back the picture that \a write writes to a target. */
   [[nodiscard]] std::vector<float> read_written(gpu::Device &device,
                                                 const std::function<void(const draw::Target &)> &write) const;
@@ -167,6 +207,11 @@ class WindowViewport {
   void show_lamps(Document &document, glm::vec2 corner, glm::vec2 size);
   void take_pointer(Document &document, glm::vec2 corner);
   void take_navigation(bool is_hovered);
+  /** Follow a drag that selects an area. \return whether there is one; it then consumes the pointer's input */
+  bool take_area(Document &document, glm::vec2 corner);
+  void show_area(glm::vec2 corner) const;
+  /** Say over the picture what is left out, and why it is black. */
+  void show_notes(const Document &document, glm::vec2 corner, glm::vec2 size) const;
   /** \return whether an operation is running; it then consumes the pointer's input */
   bool take_operation(Document &document);
   /** The gizmo at the selected node. Empty: not shown. */
@@ -180,6 +225,15 @@ class WindowViewport {
   struct LookedThrough {
     scene::Handle<scene::Node> node;
     Navigation navigation;
+  };
+
+  /** The area that the pointer drags, in pixels as for pick. */
+  struct Area {
+    /** The path of a lasso, or two opposite corners of a rectangle. */
+    std::vector<glm::dvec2> points_px;
+    bool is_lasso = false;
+
+    [[nodiscard]] std::vector<glm::dvec2> outline_px() const;
   };
 
   Canvas canvas_;
@@ -205,6 +259,9 @@ class WindowViewport {
   DensityKey density_key_;
   /** \see eevee::Inspection::texel_density */
   std::optional<std::vector<float>> density_;
+  std::optional<scene::Handle<scene::Node>> dark_inside_;
+  /** draw::Viewport::restart_count of the picture of dark_inside_. */
+  std::optional<std::uint64_t> dark_picture_;
   bool is_complete_ = false;
   /** The last draw threw. */
   bool has_failed_ = false;
@@ -220,6 +277,10 @@ class WindowViewport {
   bool is_transforming_ = false;
   /** The drag moves a handle, until the button is released. */
   bool is_handle_dragged_ = false;
+  std::optional<Area> area_;
+  /** \see hide, isolate */
+  std::vector<scene::Handle<scene::Node>> hidden_;
+  std::vector<scene::Handle<scene::Node>> isolated_;
 };
 
 }  // namespace gnomon::view

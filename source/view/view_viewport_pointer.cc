@@ -2,8 +2,10 @@
 // The pointer in a viewport.
 #include "view_viewport.hh"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,7 +27,7 @@ std::optional<glm::vec2> WindowViewport::place_of(const glm::dvec3 &position_ws)
   return is_inside ? std::optional(glm::vec2(*pixel)) : std::nullopt;
 }
 
-void WindowViewport::pick(Document &document, glm::ivec2 pixel_px)
+void WindowViewport::pick(Document &document, glm::ivec2 pixel_px, bool adds)
 {
   const auto is_at = [&](const glm::dmat4 &world) {
     const std::optional<glm::vec2> place = place_of(glm::dvec3(world[3]));
@@ -33,21 +35,142 @@ void WindowViewport::pick(Document &document, glm::ivec2 pixel_px)
   };
   if (has_overlays) {
     for (const scene::PlacedLamp &lamp : document.scene().placed_lamps()) {
-      if (is_at(lamp.world_from_lamp)) {
-        document.selected = lamp.node;
+      if (is_at(lamp.world_from_lamp) && !is_hidden(document.scene(), lamp.node)) {
+        document.select(lamp.node, adds);
         return;
       }
     }
     for (const scene::PlacedCamera &camera : document.scene().placed_cameras()) {
-      if (is_at(camera.world_from_camera) && document.scene().is_visible(camera.node)) {
-        document.selected = camera.node;
+      if (is_at(camera.world_from_camera) && document.scene().is_visible(camera.node) &&
+          !is_hidden(document.scene(), camera.node)) {
+        document.select(camera.node, adds);
         return;
       }
     }
   }
   const glm::ivec2 from_below(pixel_px.x, size_px_.y - 1 - pixel_px.y);
-  const std::optional<overlay::Hit> hit = overlay_->pick(drawn_view_, size_px_, from_below);
-  document.selected = hit ? hit->node : scene::Handle<scene::Node>();
+  document.click(overlay_->pick(drawn_view_, size_px_, from_below), adds);
+}
+
+void WindowViewport::select_area(Document &document, std::span<const glm::dvec2> outline_px, overlay::Reach reach,
+                                 bool adds)
+{
+  std::vector<glm::dvec2> from_below;
+  for (const glm::dvec2 &corner : outline_px) {
+    from_below.emplace_back(corner.x, double(size_px_.y) - corner.y);
+  }
+  std::vector<scene::Handle<scene::Node>> nodes = overlay_->select(drawn_view_, size_px_, from_below, reach);
+  const auto add = [&](scene::Handle<scene::Node> node, const glm::dmat4 &world) {
+    const std::optional<glm::vec2> place = place_of(glm::dvec3(world[3]));
+    if (place && overlay::is_inside(outline_px, glm::dvec2(*place)) && !is_hidden(document.scene(), node) &&
+        std::ranges::find(nodes, node) == nodes.end()) {
+      nodes.push_back(node);
+    }
+  };
+  if (has_overlays) {
+    for (const scene::PlacedLamp &lamp : document.scene().placed_lamps()) {
+      add(lamp.node, lamp.world_from_lamp);
+    }
+    for (const scene::PlacedCamera &camera : document.scene().placed_cameras()) {
+      if (document.scene().is_visible(camera.node)) {
+        add(camera.node, camera.world_from_camera);
+      }
+    }
+  }
+  document.select(nodes, adds);
+}
+
+void WindowViewport::hide(const Document &document)
+{
+  const std::vector<scene::Handle<scene::Node>> nodes = document.selection();
+  hidden_.insert(hidden_.end(), nodes.begin(), nodes.end());
+}
+
+void WindowViewport::isolate(const Document &document)
+{
+  isolated_ = isolated_.empty() ? document.selection() : std::vector<scene::Handle<scene::Node>>();
+}
+
+void WindowViewport::show_all()
+{
+  hidden_.clear();
+  isolated_.clear();
+}
+
+bool WindowViewport::is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const
+{
+  bool is_isolated = isolated_.empty();
+  for (scene::Handle<scene::Node> one = node; one; one = scene.parent(one)) {
+    if (std::ranges::find(hidden_, one) != hidden_.end()) {
+      return true;
+    }
+    is_isolated |= std::ranges::find(isolated_, one) != isolated_.end();
+  }
+  return !is_isolated;
+}
+
+std::vector<glm::dvec2> WindowViewport::Area::outline_px() const
+{
+  if (is_lasso) {
+    return points_px;
+  }
+  const auto corners = overlay::rectangle(points_px.front(), points_px.back());
+  return {corners.begin(), corners.end()};
+}
+
+void WindowViewport::show_notes(const Document &document, glm::vec2 corner, glm::vec2 size) const
+{
+  const auto write = [&](float y, const std::string &text) {
+    ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {corner.x + 8.0F, corner.y + y},
+                                        IM_COL32(255, 255, 255, 255), text.c_str(), nullptr, size.x - 16.0F);
+  };
+  if (!isolated_.empty()) {
+    write(size.y - 24.0F, fmt::format("{} isolated: / shows all", isolated_.size()));
+  }
+  else if (!hidden_.empty()) {
+    write(size.y - 24.0F, fmt::format("{} hidden: Alt+H shows all", hidden_.size()));
+  }
+  if (const auto node = dark_inside(); node && document.scene().nodes().is_live(*node)) {
+    write(0.5F * size.y,
+          fmt::format("All that is seen is the back of {}, where no light is: the eye may be inside. Home shows all.",
+                      document.scene().nodes()[*node].name));
+  }
+}
+
+bool WindowViewport::take_area(Document &document, glm::vec2 corner)
+{
+  const ImGuiIO &io = ImGui::GetIO();
+  if (!area_ && ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left) && !io.KeyAlt) {
+    const ImVec2 &from = io.MouseClickedPos[ImGuiMouseButton_Left];
+    area_ = {{glm::dvec2(from.x - corner.x, from.y - corner.y)}, io.KeyCtrl};
+    is_dragged_ = true;
+  }
+  if (!area_) {
+    return false;
+  }
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+    area_.reset();
+    return true;
+  }
+  if (area_->is_lasso ? area_->points_px.back() != pointer_px_ : area_->points_px.size() == 1) {
+    area_->points_px.push_back(pointer_px_);
+  }
+  area_->points_px.back() = pointer_px_;
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    const std::vector<glm::dvec2> outline = area_->outline_px();
+    area_.reset();
+    select_area(document, outline, reach, io.KeyShift);
+  }
+  return true;
+}
+
+void WindowViewport::show_area(glm::vec2 corner) const
+{
+  std::vector<ImVec2> points;
+  for (const glm::dvec2 &point : area_->outline_px()) {
+    points.emplace_back(corner.x + float(point.x), corner.y + float(point.y));
+  }
+  ImGui::GetWindowDrawList()->AddPolyline(points.data(), int(points.size()), IM_COL32(255, 255, 255, 220), true, 1.0F);
 }
 
 std::optional<Gizmo> WindowViewport::gizmo_of(Document &document) const
@@ -84,9 +207,10 @@ void WindowViewport::show_lamps(Document &document, glm::vec2 corner, glm::vec2 
   ImDrawList &list = *ImGui::GetWindowDrawList();
   list.PushClipRect({corner.x, corner.y}, {corner.x + size.x, corner.y + size.y}, true);
   for (const scene::PlacedLamp &lamp : document.scene().placed_lamps()) {
-    if (const std::optional<glm::vec2> place = place_of(glm::dvec3(lamp.world_from_lamp[3]))) {
+    const std::optional<glm::vec2> place = place_of(glm::dvec3(lamp.world_from_lamp[3]));
+    if (place && !is_hidden(document.scene(), lamp.node)) {
       const ImVec2 middle(corner.x + place->x, corner.y + place->y);
-      const bool is_selected = lamp.node == document.selected;
+      const bool is_selected = document.is_selected(lamp.node);
       const ImU32 color = is_selected ? IM_COL32(255, 150, 40, 255) : IM_COL32(255, 245, 200, 220);
       list.AddCircle(middle, lamp_radius_px, IM_COL32(0, 0, 0, 160), 0, 3.5F);
       list.AddCircle(middle, lamp_radius_px, color, 0, 1.5F);
@@ -163,6 +287,7 @@ void WindowViewport::take_pointer(Document &document, glm::vec2 corner)
   }
   if (take_operation(document)) {
     pointed_.reset();
+    area_.reset();
     return;
   }
   if (!ImGui::IsItemActive()) {
@@ -176,10 +301,13 @@ void WindowViewport::take_pointer(Document &document, glm::vec2 corner)
     is_dragged_ = true;
     return;
   }
+  if (take_area(document, corner)) {
+    return;
+  }
   take_navigation(is_hovered);
   if (is_hovered && ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !is_dragged_ &&
       !io.KeyAlt) {
-    pick(document, glm::ivec2(pointer_px_));
+    pick(document, glm::ivec2(pointer_px_), io.KeyShift);
   }
 }
 
@@ -195,12 +323,16 @@ bool WindowViewport::show(Document &document, glm::vec2 size, bool is_active)
   const bool is_hovered = ImGui::IsItemHovered();
   if (viewport_) {
     take_pointer(document, corner);
+    if (area_) {
+      show_area(corner);
+    }
     if (has_overlays) {
       show_lamps(document, corner, size);
     }
     if (document.settings().has_texel_density && engine == "eevee") {
       show_density_scale(document, corner, size);
     }
+    show_notes(document, corner, size);
     if (is_transforming_ && document.operation()) {
       const std::string text = document.operation()->text();
       ImGui::GetWindowDrawList()->AddText({at.x + 9.0F, at.y + 7.0F}, IM_COL32(0, 0, 0, 200), text.c_str());

@@ -88,6 +88,35 @@ TEST(VisibleObjects, FollowEditsAndViews)
   EXPECT_FALSE(visible.contains(object));
 }
 
+TEST(VisibleObjects, AreWithoutThoseThatTheViewHides)
+{
+  const View view(glm::mat4(1.0F), perspective(1.0F, 1.0F, 0.1F, 10.0F));
+  ObjectBuffer objects;
+  const ObjectIndex first = objects.add(glm::mat4(1.0F), 0, {{0, 0, -5}, 1.0F});
+  const ObjectIndex second = objects.add(glm::mat4(1.0F), 0, {{0, 0, -5}, -1.0F});
+  std::vector<std::uint8_t> flags(100);
+  flags[second] = 7;
+  const View less = view.with_hidden(ObjectSet(flags));
+  VisibleObjects visible;
+  visible.update(view, objects);
+  EXPECT_TRUE(visible.contains(second));
+  visible.update(less, objects);
+  EXPECT_TRUE(visible.contains(first));
+  EXPECT_FALSE(visible.contains(second)) << "also if it is never culled";
+  visible.update(view, objects);
+  EXPECT_TRUE(visible.contains(second));
+  // Sets are equal by their objects, so that a host may make one for each frame.
+  flags.resize(second + 1);
+  EXPECT_EQ(less, view.with_hidden(ObjectSet(flags)));
+  EXPECT_NE(less, view);
+  EXPECT_EQ(view, less.with_hidden(ObjectSet(std::vector<std::uint8_t>(5))));
+  flags.resize(90);
+  flags[80] = 1;
+  // Objects that do not exist may be in a set.
+  visible.update(view.with_hidden(ObjectSet(flags)), objects);
+  EXPECT_FALSE(visible.contains(second));
+}
+
 TEST(ObjectBuffer, UsesTheLowestFreeIndexAfterAnyEdits)
 {
   std::mt19937 random(11);

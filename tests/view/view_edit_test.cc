@@ -347,6 +347,59 @@ TEST(ViewHistoryTest, AnAdditionIsUndoneAndRedoneAlsoWithLaterEditsOfIt)
   }
 }
 
+TEST(ViewHistoryTest, WhatIsJoinedIsOneStepAlsoAfterTheOldestChangesAreForgotten)
+{
+  scene::Scene scene;
+  History history;
+  std::vector<scene::Handle<scene::Node>> nodes;
+  for (const char *name : {"a", "b", "c"}) {
+    nodes.push_back(scene.add(scene::Node{.name = name}));
+  }
+  const auto hidden = [&] {
+    return std::ranges::count_if(nodes, [&](auto node) {
+      const scene::Node *one = scene.nodes().find(node);
+      return one && !one->is_visible;
+    });
+  };
+  const auto hide = [](scene::Node &node) { node.is_visible = !node.is_visible; };
+  history.edit(scene, nodes[2], hide);
+  history.join([&] {
+    history.edit(scene, nodes[0], hide);
+    history.edit(scene, nodes[1], hide);
+    history.remove(scene, nodes[2]);
+  });
+  history.edit(scene, nodes[0], hide);
+  history.end_gesture();
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(hidden(), 2);
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(hidden(), 1);
+  EXPECT_TRUE(scene.nodes().is_live(nodes[2]));
+  EXPECT_TRUE(history.redo(scene));
+  EXPECT_EQ(hidden(), 2);
+  EXPECT_FALSE(scene.nodes().is_live(nodes[2]));
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(hidden(), 0);
+  EXPECT_FALSE(history.undo(scene));
+  // What fails joins nothing with what follows.
+  EXPECT_THROW(history.join([] { throw std::runtime_error("no"); }), std::runtime_error);
+  history.edit(scene, nodes[0], hide);
+  history.end_gesture();
+  history.edit(scene, nodes[1], hide);
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(hidden(), 1);
+  EXPECT_TRUE(history.undo(scene));
+  // More changes than are kept: the rest of the step is one.
+  history.join([&] {
+    for (std::size_t i = 0; i < History::change_max + 3; i++) {
+      history.edit(scene, nodes[i % 2], hide);
+    }
+  });
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_FALSE(history.undo(scene));
+}
+
 TEST(ViewHistoryTest, AGestureThatIsRevertedIsForgottenAndThoseBeforeItAreKept)
 {
   scene::Scene scene;
@@ -446,6 +499,7 @@ TEST(ViewAdditionsTest, ADuplicateHasItsDescendantsAndLampsOfItsOwn)
 
 TEST(ViewIconsTest, ConesAreLinesAtTheAngleOfTheSpotAndSunsAlongTheirDirection)
 {
+  const auto all = [](scene::Handle<scene::Node> /*node*/) { return true; };
   scene::Scene scene;
   glm::dmat4 place = scene::frame_of(placed_at(middle));
   const auto spot = scene.add(
@@ -454,21 +508,21 @@ TEST(ViewIconsTest, ConesAreLinesAtTheAngleOfTheSpotAndSunsAlongTheirDirection)
   const PictureMap map = map_from(eye);
   const glm::dvec3 forward = -glm::dvec3(place[2]);
   double widest = 0.0;
-  for (const overlay::Line &line : icon_lines(scene, map, {})) {
+  for (const overlay::Line &line : icon_lines(scene, map, {}, all)) {
     EXPECT_FALSE(line.is_on_top);
     const glm::dvec3 way = line.to_ws - middle;
     EXPECT_NEAR(glm::length(way), 2.5, 1e-6);
     widest = std::max(widest, std::acos(glm::dot(glm::normalize(way), forward)));
   }
   EXPECT_NEAR(widest, 0.4, 1e-6);
-  for (const overlay::Line &line : icon_lines(scene, map, node)) {
+  for (const overlay::Line &line : icon_lines(scene, map, node, all)) {
     EXPECT_TRUE(line.is_on_top) << "it is selected";
   }
 
   scene.edit(spot, [](scene::Lamp &lamp) { lamp.kind = scene::LampKind::Sun; });
   double longest = 0.0;
   glm::dvec3 direction(0.0);
-  for (const overlay::Line &line : icon_lines(scene, map, {})) {
+  for (const overlay::Line &line : icon_lines(scene, map, {}, all)) {
     if (glm::distance(line.from_ws, line.to_ws) > longest) {
       longest = glm::distance(line.from_ws, line.to_ws);
       direction = glm::normalize(line.to_ws - line.from_ws);
@@ -476,7 +530,7 @@ TEST(ViewIconsTest, ConesAreLinesAtTheAngleOfTheSpotAndSunsAlongTheirDirection)
   }
   EXPECT_LT(glm::distance(direction, forward), 1e-9);
   scene.edit(node, [](Node &hidden) { hidden.is_visible = false; });
-  EXPECT_TRUE(icon_lines(scene, map, {}).empty());
+  EXPECT_TRUE(icon_lines(scene, map, {}, all).empty());
 }
 
 TEST(ViewFlyTest, KeysMoveTheEyeAlongItsAxesAndThePointerTurnsItInPlace)
@@ -567,6 +621,41 @@ TEST(ViewDocumentTest, ASurfaceFunctionIsReadAgainWhenItsFileIsWrittenWhichIsNoE
   fs::remove(file);
 }
 
+TEST(ViewDocumentTest, SeveralNodesAreSelectedTheFirstOfThemForThePanelsAndWhatIsRemovedIsNot)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  using Nodes = std::vector<scene::Handle<scene::Node>>;
+  Nodes nodes;
+  for (const char *name : {"a", "b", "c"}) {
+    nodes.push_back(scene.add(scene::Node{.name = name}));
+  }
+  const auto child = scene.add(scene::Node{.name = "child"}, nodes[0]);
+  Document document(*device, std::move(scene), default_settings());
+  document.select(Nodes{nodes[1], nodes[0]});
+  EXPECT_EQ(document.selected, nodes[1]);
+  EXPECT_EQ(document.selected_nodes(), (Nodes{nodes[1], nodes[0], child}));
+  document.select(nodes[2], true);
+  EXPECT_EQ(document.selection(), (Nodes{nodes[2], nodes[1], nodes[0]}));
+  document.select(child, true);
+  EXPECT_EQ(document.selected_nodes().size(), 4U) << "a child is there once";
+  document.select(Nodes(), true);
+  EXPECT_EQ(document.selected, child) << "nothing is added";
+  document.select(nodes[1]);
+  EXPECT_EQ(document.selection(), Nodes{nodes[1]});
+  EXPECT_FALSE(document.is_selected(nodes[0]));
+
+  document.select(Nodes{child, nodes[0], nodes[1]});
+  EXPECT_TRUE(document.remove_selected());
+  EXPECT_EQ(document.scene().nodes().size(), 1U);
+  EXPECT_TRUE(document.selection().empty());
+  EXPECT_FALSE(document.remove_selected());
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(document.scene().nodes().size(), 4U);
+  EXPECT_EQ(document.scene().parent(child), nodes[0]);
+  EXPECT_FALSE(document.undo());
+}
+
 TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndone)
 {
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -600,6 +689,16 @@ TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndo
   EXPECT_EQ(document.scene().world()->color, glm::vec3(0, 0, 1));
 }
 
+TEST(ViewPropertiesTest, AnglesAreShownWithoutTheRoundingOfMatrices)
+{
+  EXPECT_EQ(shown_number(1.84e-05, "°"), 0.0);
+  EXPECT_FALSE(std::signbit(shown_number(-1.84e-05, "°")));
+  EXPECT_EQ(shown_number(89.99999, "°"), 90.0);
+  EXPECT_EQ(shown_number(0.53, "°"), 0.53);
+  EXPECT_EQ(shown_number(1.84e-05, "m"), 1.84e-05);
+  EXPECT_FALSE(std::signbit(shown_number(-0.0, "m")));
+}
+
 TEST(ViewKeysTest, KeysAreNamedAsMenusShowThem)
 {
   EXPECT_EQ(key_of("g"), (KeyPress{'G', 0}));
@@ -607,7 +706,9 @@ TEST(ViewKeysTest, KeysAreNamedAsMenusShowThem)
   EXPECT_NE(key_of("ctrl+shift+z")->mods, key_of("ctrl+z")->mods);
   EXPECT_EQ(key_of("7")->key, '7');
   EXPECT_EQ(key_of("-")->key, '-');
-  for (const char *wrong : {"", "G", "ctrl+", "alt+g", "return"}) {
+  EXPECT_EQ(key_of("/")->key, '/');
+  EXPECT_NE(key_of("alt+h")->mods, key_of("shift+h")->mods);
+  for (const char *wrong : {"", "G", "ctrl+", "meta+g", "return"}) {
     EXPECT_FALSE(key_of(wrong)) << wrong;
   }
 }

@@ -21,7 +21,7 @@ draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::
     clip_from_view[column][0] += offset_clip.x * clip_from_view[column][3];
     clip_from_view[column][1] += offset_clip.y * clip_from_view[column][3];
   }
-  return {view.view_from_world(), clip_from_view, view.lens()};
+  return {view.view_from_world(), clip_from_view, view.lens(), view.hidden()};
 }
 
 /** \a place of the unit square in the regular polygon around the origin, whose corners are on the unit circle. */
@@ -57,7 +57,7 @@ draw::View view_through_lens(const draw::View &view, int index, int count, std::
       clip_from_view[2][axis] -= clip_from_view[axis][axis] * point[axis] / lens.focus_distance;
     }
   }
-  return {view_from_world, clip_from_view};
+  return {view_from_world, clip_from_view, {}, view.hidden()};
 }
 
 draw::View view_around_lens(const draw::View &view)

@@ -212,7 +212,8 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     record(viewport);
     if (is_for_feedback) {
       // Cascades are fitted to the same depths, whatever range of samples is drawn.
-      sample_view = view_of_sample({view.view_from_world(), view.clip_from_view()}, viewport, settings_, 0);
+      sample_view =
+          view_of_sample({view.view_from_world(), view.clip_from_view(), {}, view.hidden()}, viewport, settings_, 0);
       data.visible.update(sample_view, scene_.objects());
     }
     data.blend.order(scene_, sample_view, data.visible, data.materials.transmissive, data.is_transmission_seen);

@@ -26,7 +26,9 @@ void SceneRenderer::sync()
 
 draw::View SceneRenderer::view_of(const scene::PlacedCamera &camera) const
 {
-  return eevee::view_of(camera, viewport_.size_px(), render_scene_.origin_ws());
+  const draw::View view = eevee::view_of(camera, viewport_.size_px(), render_scene_.origin_ws());
+  return hidden_.empty() && isolated_.empty() ? view
+                                              : view.with_hidden(render_scene_.hidden_objects(hidden_, isolated_));
 }
 
 bool SceneRenderer::prepare(gpu::Packet &packet, const scene::PlacedCamera &camera, const draw::Target &target)

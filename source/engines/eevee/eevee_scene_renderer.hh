@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -113,7 +114,17 @@ class SceneRenderer {
    */
   [[nodiscard]] std::vector<glm::vec4> read_picture();
 
-  /** The view of \a camera in the coordinates of the render scene. */
+  /**
+   * Leave objects out of the pictures and not out of the scene. \see RenderScene::hidden_objects,
+   * draw::View::hidden. Takes effect with the next draw, and needs no sync. At first, nothing is left out.
+   */
+  void set_hidden(std::vector<scene::Handle<scene::Node>> hidden, std::vector<scene::Handle<scene::Node>> isolated = {})
+  {
+    hidden_ = std::move(hidden);
+    isolated_ = std::move(isolated);
+  }
+
+  /** The view of \a camera in the coordinates of the render scene, without hidden objects. */
   [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;
   [[nodiscard]] const Settings &settings() const
   {
@@ -158,6 +169,8 @@ class SceneRenderer {
   Engine engine_;
   draw::Viewport viewport_;
   Settings settings_;
+  std::vector<scene::Handle<scene::Node>> hidden_;
+  std::vector<scene::Handle<scene::Node>> isolated_;
   /** The last sync succeeded, and settings and size have not changed since. */
   bool is_synced_ = false;
   /** Created by the first draw_within. */

@@ -3,6 +3,7 @@
 
 #include "overlay_interfaces.hh"
 #include "overlay_programs.hh"
+#include "overlay_triangle.hh"
 
 #include "draw_view_shared.h"
 #include "gpu_read.hh"
@@ -34,17 +35,17 @@ static Feature mask_features(MaterialClass mask_class)
   return Feature::AlphaMask | Feature::FullMaterial;
 }
 
-draw::View view_of_pixel(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px)
+draw::View view_of_region(const draw::View &view, glm::ivec2 size_px, const gpu::Rectangle &region)
 {
-  // The pixel's x / w from (2 p - size) / size to (2 p + 2 - size) / size becomes -1 to 1.
-  const glm::vec2 size(size_px);
-  const glm::vec2 offset = size - 2.0F * glm::vec2(pixel_px) - 1.0F;
+  // The region's x / w from (2 p - size) / size to (2 p + 2 region - size) / size becomes -1 to 1.
+  const glm::vec2 part(region.size_px);
+  const glm::vec2 offset = glm::vec2(size_px - 2 * region.origin_px - region.size_px) / part;
   glm::mat4 crop(1.0F);
-  crop[0][0] = size.x;
-  crop[1][1] = size.y;
+  crop[0][0] = float(size_px.x) / part.x;
+  crop[1][1] = float(size_px.y) / part.y;
   crop[3][0] = offset.x;
   crop[3][1] = offset.y;
-  return {view.view_from_world(), crop * view.clip_from_view()};
+  return {view.view_from_world(), crop * view.clip_from_view(), {}, view.hidden()};
 }
 
 void Overlay::check_up_to_date() const
@@ -115,7 +116,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
   MaterialClass widest = MaterialClass::Plain;
   for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
-    if (!objects.is_live(index) || !is_drawn(scene_.object(index)) || !view.touches(objects.volume(index))) {
+    if (!objects.is_live(index) || !is_drawn(index) || !view.touches(objects.volume(index))) {
       continue;
     }
     const render_scene::RenderObject &object = scene_.object(index);
@@ -167,8 +168,8 @@ std::optional<Hit> Overlay::pick(const draw::View &view, glm::ivec2 size_px, glm
   }
   gpu::Device &device = scene_.device();
   gpu::CommandList list;
-  const auto is_any = [](const render_scene::RenderObject & /*object*/) { return true; };
-  if (!record_objects(view_of_pixel(view, size_px, pixel_px), glm::ivec2(1), is_any, pixel_, list)) {
+  const auto is_any = [](draw::ObjectIndex /*object*/) { return true; };
+  if (!record_objects(view_of_region(view, size_px, {pixel_px, glm::ivec2(1)}), glm::ivec2(1), is_any, pixel_, list)) {
     return std::nullopt;
   }
   device.submit(list);
@@ -180,9 +181,18 @@ std::optional<Hit> Overlay::pick(const draw::View &view, glm::ivec2 size_px, glm
   const glm::dvec2 ndc = 2.0 * (glm::dvec2(pixel_px) + 0.5) / glm::dvec2(size_px) - 1.0;
   const glm::dmat4 world_from_clip =
       glm::inverse(glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world()));
-  const glm::dvec4 position = world_from_clip * glm::dvec4(ndc, texel.y, 1.0);
+  const auto position_at = [&](double depth) {
+    const glm::dvec4 position = world_from_clip * glm::dvec4(ndc, depth, 1.0);
+    return glm::dvec3(position) / position.w + scene_.origin_ws();
+  };
   const render_scene::RenderObject &object = scene_.object(index);
-  return Hit{object.node, object.mesh, glm::dvec3(position) / position.w + scene_.origin_ws()};
+  Hit hit{.node = object.node, .mesh = object.mesh, .position_ws = position_at(double(texel.y))};
+  // A smaller depth is farther away. Half of a depth is within the range of both projections.
+  const glm::dvec3 direction_ws = position_at(0.5 * double(texel.y)) - position_at(1.0);
+  const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
+  hit.triangle = triangle_at(mesh, scene_.scene().world_from_node(object.node),
+                             scene_.scene().material_of(mesh).is_double_sided, direction_ws, hit.position_ws);
+  return hit;
 }
 
 void Overlay::draw_outline(const draw::View &view, glm::ivec2 size_px,
@@ -192,7 +202,7 @@ void Overlay::draw_outline(const draw::View &view, glm::ivec2 size_px,
   check_up_to_date();
   draw::check(target, size_px);
   const std::unordered_set<scene::Handle<scene::Node>> chosen(nodes.begin(), nodes.end());
-  const auto is_chosen = [&](const render_scene::RenderObject &object) { return chosen.contains(object.node); };
+  const auto is_chosen = [&](draw::ObjectIndex object) { return chosen.contains(scene_.object(object).node); };
   gpu::CommandList list;
   if (!target || chosen.empty() || !record_objects(view, size_px, is_chosen, mask_, list)) {
     return;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 /** The additions of an editor to a picture: the object under a pixel, an outline of selected objects, and lines in the
  * scene. */
@@ -19,13 +20,50 @@ namespace gnomon::overlay {
 enum class ShaderId;
 enum class Feature : std::uint32_t;
 
+/** A point on a triangle of a mesh. */
+struct TrianglePoint {
+  /** The corners are the vertices that Mesh::indices names at 3 · index, 3 · index + 1 and 3 · index + 2. */
+  std::uint32_t index = 0;
+  /** Weights of these corners: at least 0, with the sum 1. They interpolate every stream of the mesh. */
+  glm::dvec3 barycentric{1.0, 0.0, 0.0};
+  /** Interpolated Mesh::uvs; (0, 0) if the mesh has none. */
+  glm::vec2 uv{0.0F};
+  /**
+   * Interpolated Mesh::normals, a unit vector in world space. Where they add up to zero, that of the triangle. Of the
+   * front, also where the back is seen.
+   */
+  glm::vec3 normal_ws{0.0F, 0.0F, 1.0F};
+};
+
 /** The surface at the middle of a pixel. */
 struct Hit {
   scene::Handle<scene::Node> node;
   scene::Handle<scene::Mesh> mesh;
-  /** World space of the scene, metres. */
+  /** World space of the scene, metres. On the triangle, if there is one; otherwise from the depth of the pixel. */
   glm::dvec3 position_ws{0.0};
+  /** Of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host. */
+  std::optional<TrianglePoint> triangle{};
 };
+
+/** Which of the objects in an area of a picture Overlay::select finds. */
+enum class Reach {
+  /** Those that are seen there. */
+  Visible,
+  /** Also those that others hide. */
+  Through
+};
+
+/**
+ * The corners of a rectangle in a picture, for Overlay::select. \a from_px and \a to_px: any two opposite corners, in
+ * pixels from the lower left corner of the picture.
+ */
+[[nodiscard]] std::array<glm::dvec2, 4> rectangle(const glm::dvec2 &from_px, const glm::dvec2 &to_px);
+
+/**
+ * Whether \a point is within the closed polygon \a corners, of at least 3. Where the outline crosses itself, a point is
+ * inside if a line from it to infinity crosses the outline an odd number of times.
+ */
+[[nodiscard]] bool is_inside(std::span<const glm::dvec2> corners, const glm::dvec2 &point);
 
 /** A straight line between two points. */
 struct Line {
@@ -57,9 +95,21 @@ class Overlay {
   /**
    * The nearest surface at the middle of \a pixel_px, from the lower left corner; nothing: there is none, or the pixel
    * is not in the picture. Parts that an alpha mask cuts out, back faces of one-sided materials and invisible nodes are
-   * no surface. Draws the objects that the pixel can see into one pixel, and waits for it.
+   * no surface. Draws the objects that the pixel can see into one pixel, and waits for it. The CPU then searches all
+   * triangles of the mesh for the one that was drawn.
    */
   [[nodiscard]] std::optional<Hit> pick(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
+  /**
+   * The nodes with a surface, as pick() defines it, at the middle of at least one pixel within the closed polygon
+   * \a outline_px: a rectangle() or the path of a lasso. Corners are in pixels from the lower left corner of the
+   * picture, whose lowest left pixel has its middle at (0.5, 0.5); they may be outside of the picture, and fewer than 3
+   * enclose nothing. \see is_inside. Each node is there once, in the order of the objects.
+   *
+   * Draws the objects in the rectangle around the outline once for Reach::Visible, and reads that back. Reach::Through
+   * repeats it without the objects that were found until there are no more, as often as objects lie behind each other.
+   */
+  [[nodiscard]] std::vector<scene::Handle<scene::Node>> select(const draw::View &view, glm::ivec2 size_px,
+                                                               std::span<const glm::dvec2> outline_px, Reach reach);
   /**
    * Draw a line around each visible object of \a nodes over the content of \a target, also where other objects hide it.
    * \a color: not premultiplied, and stored as Target::encoding stores; the view transform does not change it.
@@ -95,7 +145,7 @@ class Overlay {
 
     bool operator==(const ObjectsKey &) const = default;
   };
-  using IsDrawn = std::function<bool(const render_scene::RenderObject &object)>;
+  using IsDrawn = std::function<bool(draw::ObjectIndex object)>;
 
   void check_up_to_date() const;
   const gpu::Shader &shader(ShaderId id, Feature features);
@@ -117,6 +167,7 @@ class Overlay {
   gpu::Buffer view_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
+  /** Chosen objects, of an outline or in an area. */
   ObjectsTarget mask_;
   /** All objects, for lines that they hide. */
   ObjectsTarget hiding_;
@@ -126,7 +177,7 @@ class Overlay {
   gpu::Buffer line_block_;
 };
 
-/** \a view, restricted to one pixel of a picture of \a size_px, from the lower left corner. */
-[[nodiscard]] draw::View view_of_pixel(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
+/** \a view, restricted to some pixels of a picture of \a size_px, from the lower left corner. */
+[[nodiscard]] draw::View view_of_region(const draw::View &view, glm::ivec2 size_px, const gpu::Rectangle &region);
 
 }  // namespace gnomon::overlay

@@ -53,7 +53,7 @@ bool Overlay::update_hiding(const draw::View &view, glm::ivec2 size_px)
   if (key != hiding_key_) {
     hiding_key_ = {};
     gpu::CommandList list;
-    const auto is_any = [](const render_scene::RenderObject & /*object*/) { return true; };
+    const auto is_any = [](draw::ObjectIndex /*object*/) { return true; };
     has_hiding_ = record_objects(view, size_px, is_any, hiding_, list);
     if (has_hiding_) {
       device.submit(list);

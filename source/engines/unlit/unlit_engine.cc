@@ -163,8 +163,9 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
     data.nearest = device.create_sampler({.name = "unlit_nearest"});
     data.recorded = {};
   }
-  data.is_seen = std::ranges::any_of(
-      data.objects, [&](draw::ObjectIndex object) { return view.touches(scene_.objects().volume(object)); });
+  data.visible.update(view, scene_.objects());
+  data.is_seen =
+      std::ranges::any_of(data.objects, [&](draw::ObjectIndex object) { return data.visible.contains(object); });
   gpu::CommandList list;
   gpu::FramebufferStack stack(list);
   DepthKey depth{
@@ -186,9 +187,9 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
     stack.pop();
   }
   if (data.is_seen) {
-    data.surfaces->record(view, list);
+    data.surfaces->record(view, data.visible, list);
     order_blended(data, view);
-    data.blended_surfaces->record(view, list);
+    data.blended_surfaces->record(view, data.visible, list);
   }
   stack.pop();
   device.submit(list);

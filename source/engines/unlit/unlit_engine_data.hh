@@ -100,6 +100,8 @@ struct Data final : draw::EngineViewportData {
   bool is_winding_changed = false;
   /** The class of materials with the most inputs. */
   render_scene::MaterialClass widest = render_scene::MaterialClass::Plain;
+  /** The visible objects of the last sample. */
+  draw::VisibleObjects visible;
   bool is_seen = false;
   gpu::Texture radiance;
   gpu::Framebuffer framebuffer;

@@ -9,7 +9,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <map>
 #include <random>
+#include <set>
 
 namespace gnomon::overlay {
 namespace {
@@ -79,6 +81,92 @@ class OverlayGpuTest : public test::GpuDeviceTest {
     return glm::dvec2(10, 15) + (0.5 * glm::dvec2(clip) / clip.w + 0.5) * glm::dvec2(size_px);
   }
 
+  /** The ray through the middle of a pixel, or beside it, in double, by the matrices that the device has as floats. */
+  [[nodiscard]] reference::Ray ray_through(const glm::dvec2 &pixel) const
+  {
+    const glm::dmat4 world_from_clip =
+        glm::inverse(glm::dmat4(view().clip_from_view()) * glm::dmat4(view().view_from_world()));
+    const glm::dvec2 ndc = 2.0 * (pixel + 0.5) / glm::dvec2(size_px) - 1.0;
+    const glm::dvec4 near = world_from_clip * glm::dvec4(ndc, 1.0, 1.0);
+    const glm::dvec4 far = world_from_clip * glm::dvec4(ndc, 0.01, 1.0);
+    const glm::dvec3 origin = glm::dvec3(near) / near.w;
+    return {.origin_ws = origin + render_scene->origin_ws(),
+            .direction_ws = glm::normalize(glm::dvec3(far) / far.w - origin),
+            .t_min = 0.0};
+  }
+  /** The point that the weights of a hit's triangle give, world space. */
+  [[nodiscard]] glm::dvec3 weighted(const Hit &hit) const
+  {
+    const scene::Mesh &mesh = scene.meshes()[hit.mesh];
+    glm::dvec3 sum(0.0);
+    for (std::uint32_t i = 0; i < 3; i++) {
+      sum += hit.triangle->barycentric[int(i)] * glm::dvec3(mesh.positions[mesh.indices[3 * hit.triangle->index + i]]);
+    }
+    return glm::dvec3(scene.world_from_node(hit.node) * glm::dvec4(sum, 1.0));
+  }
+  /**
+   * Compare what pixels pick with \a grid, which add_grid made, at \a node: its plane, cells and uvs have closed
+   * forms. \a stretch: of x and y in the mesh's present pose. \return the number of pixels that show it
+   */
+  int expect_grid(scene::Handle<scene::Node> node, const glm::dvec2 &stretch = glm::dvec2(1.0))
+  {
+    const glm::dmat4 world = scene.world_from_node(node);
+    const glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(world[0]), glm::dvec3(world[1])) *
+                                             (glm::determinant(glm::dmat3(world)) < 0.0 ? -1.0 : 1.0));
+    int count = 0;
+    for (int y = 0; y < size_px.y; y += 2) {
+      for (int x = 0; x < size_px.x; x += 2) {
+        const std::optional<Hit> hit = pick(x, y);
+        if (!hit || hit->node != node) {
+          continue;
+        }
+        if (!hit->triangle) {
+          ADD_FAILURE() << "no triangle at " << x << ", " << y;
+          continue;
+        }
+        const reference::Ray ray = ray_through({x, y});
+        const double t = glm::dot(glm::dvec3(world[3]) - ray.origin_ws, normal) / glm::dot(ray.direction_ws, normal);
+        const glm::dvec3 position_ws = ray.origin_ws + t * ray.direction_ws;
+        const glm::dvec2 inside = glm::dvec2(glm::inverse(world) * glm::dvec4(position_ws, 1.0)) / stretch;
+        const glm::dvec2 cell_at = 0.5 * (inside + 1.0) * glm::dvec2(grid_cells);
+        const glm::dvec2 part = glm::fract(cell_at);
+        // At an edge that cells share, either is right.
+        if (std::min({part.x, part.y, 1.0 - part.x, 1.0 - part.y, std::abs(part.x - part.y)}) < 1e-3) {
+          continue;
+        }
+        const glm::ivec2 cell(glm::floor(cell_at));
+        EXPECT_EQ(int(hit->triangle->index), 2 * (cell.y * grid_cells.x + cell.x) + (part.x > part.y ? 0 : 1));
+        // Positions of the mesh and the pose are floats.
+        EXPECT_LT(glm::distance(hit->position_ws, position_ws), 1e-6) << x << ", " << y;
+        EXPECT_LT(glm::distance(weighted(*hit), position_ws), 1e-6) << x << ", " << y;
+        EXPECT_LT(glm::distance(glm::dvec2(hit->triangle->uv), glm::dvec2(0.5, -0.5) * inside + 0.5), 1e-6);
+        EXPECT_LT(glm::distance(glm::dvec3(hit->triangle->normal_ws), normal), 1e-6);
+        count++;
+      }
+    }
+    return count;
+  }
+  static constexpr glm::ivec2 grid_cells{7, 5};
+  /** A square of cells with two triangles each, from -1 to 1 in x and y, facing +Z, with uvs along -Y. */
+  scene::Handle<scene::Mesh> add_grid(scene::Handle<scene::Material> material)
+  {
+    scene::Mesh mesh{.name = "grid", .material = material};
+    const auto stride = std::uint32_t(grid_cells.x + 1);
+    for (int y = 0; y <= grid_cells.y; y++) {
+      for (int x = 0; x <= grid_cells.x; x++) {
+        const glm::vec2 at = glm::vec2(x, y) / glm::vec2(grid_cells);
+        mesh.positions.emplace_back(2.0F * at - 1.0F, 0.0F);
+        mesh.normals.emplace_back(0, 0, 1);
+        mesh.uvs.emplace_back(at.x, 1.0F - at.y);
+        if (x < grid_cells.x && y < grid_cells.y) {
+          const std::uint32_t i = std::uint32_t(y) * stride + std::uint32_t(x);
+          mesh.indices.insert(mesh.indices.end(), {i, i + 1, i + stride + 1, i, i + stride + 1, i + stride});
+        }
+      }
+    }
+    return scene.add(std::move(mesh));
+  }
+
   scene::Scene scene;
   scene::PlacedCamera camera = test::camera_at({0, 0, 5}, {0, 0, 0});
   std::optional<render_scene::RenderScene> render_scene;
@@ -139,6 +227,143 @@ TEST_F(OverlayGpuTest, EachPixelPicksTheObjectAndPositionThatItsRayMeetsFirst)
   EXPECT_GT(miss_count, 50);
 }
 
+TEST_F(OverlayGpuTest, APickedTriangleIsThatOfTheCellOfAPlaneAtEachInstanceTurnedOrMirrored)
+{
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  test::edit_material(scene, 0, [](scene::Material &one) { one.is_double_sided = false; });
+  const auto grid = add_grid(material);
+  const auto placed = [&](double x, const glm::dvec3 &scale, double angle) {
+    const glm::dmat4 place = glm::rotate(glm::translate(glm::dmat4(1), {x, 0.2, -0.5}), angle, {0.3, 1, 0.1});
+    return test::add_object(scene, grid, glm::scale(place, scale));
+  };
+  const std::array nodes = {placed(-1.6, {0.7, 1.1, 1}, 0.4), placed(0.0, {-0.7, 1.1, 1}, 0.4),
+                            placed(1.6, {0.7, -1.1, 1}, -0.3)};
+  for (const auto node : nodes) {
+    EXPECT_GT(expect_grid(node), 20);
+  }
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_height = 2.0F;
+  camera.half_width = 3.0F;
+  EXPECT_GT(expect_grid(nodes[0]), 20) << "parallel";
+  // From behind, a surface with two sides has the normal of its front.
+  test::edit_material(scene, 0, [](scene::Material &one) { one.is_double_sided = true; });
+  camera = test::camera_at({0, 0, -5}, {0, 0, 0});
+  EXPECT_GT(expect_grid(nodes[0]), 20) << "from behind";
+}
+
+TEST_F(OverlayGpuTest, APickedTriangleOfADeformedMeshIsThatOfItsPose)
+{
+  const auto grid = add_grid(test::add_material(scene, glm::vec3(0.5F)));
+  const auto node = test::add_object(scene, grid, glm::rotate(glm::dmat4(1), 0.3, {0, 1, 0}));
+  const scene::Mesh &rest = scene.meshes()[grid];
+  scene::DeformedMesh deformed;
+  deformed.mesh = grid;
+  deformed.node = node;
+  deformed.positions = rest.positions;
+  deformed.normals = rest.normals;
+  deformed.targets.emplace_back();
+  for (const glm::vec3 &position : rest.positions) {
+    deformed.targets[0].positions.emplace_back(0.5F * position.x, -0.5F * position.y, 0.0F);
+  }
+  deformed.weights = {0.0};
+  scene.deformed_meshes.push_back(deformed);
+  EXPECT_GT(expect_grid(node), 20);
+  scene::set_morph_weights(scene, node, std::array{1.0});
+  scene::deform_meshes(scene);
+  EXPECT_GT(expect_grid(node, {1.5, 0.5}), 20);
+}
+
+TEST_F(OverlayGpuTest, APickedTriangleOfASphereHasTheAnglesOfItsPointAndItsNormalPointsFromTheMiddle)
+{
+  constexpr int segments = 64;
+  constexpr double step = 2.0 * M_PI / segments;
+  scene::Mesh mesh{.name = "sphere", .material = test::add_material(scene, glm::vec3(0.5F))};
+  for (int ring = 0; ring <= segments / 2; ring++) {
+    for (int segment = 0; segment <= segments; segment++) {
+      // The seam of the uvs is behind.
+      const glm::dvec2 angles(step * segment - M_PI, step * ring);
+      mesh.normals.emplace_back(std::sin(angles.y) * std::sin(angles.x), std::cos(angles.y),
+                                std::sin(angles.y) * std::cos(angles.x));
+      mesh.uvs.emplace_back(angles);
+      const auto i = std::uint32_t(ring * (segments + 1) + segment);
+      if (ring < segments / 2 && segment < segments) {
+        mesh.indices.insert(mesh.indices.end(), {i, i + segments + 1, i + segments + 2, i, i + segments + 2, i + 1});
+      }
+    }
+  }
+  mesh.positions = mesh.normals;
+  const glm::dvec3 middle(0.3, -0.2, 0.5);
+  const auto node = test::add_object(scene, scene.add(std::move(mesh)), glm::translate(glm::dmat4(1), middle));
+  int count = 0;
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x += 2) {
+      const reference::Ray ray = ray_through({x, y});
+      const glm::dvec3 from_middle = ray.origin_ws - middle;
+      const double along = -glm::dot(from_middle, ray.direction_ws);
+      const double past_squared = glm::dot(from_middle, from_middle) - along * along;
+      const std::optional<Hit> hit = pick(x, y);
+      // The triangles lie within the sphere, by up to `sagitta`.
+      constexpr double sagitta = step * step / 4.0;
+      EXPECT_TRUE(hit || past_squared > (1.0 - sagitta) * (1.0 - sagitta)) << x << ", " << y;
+      EXPECT_TRUE(!hit || past_squared <= 1.0) << x << ", " << y;
+      // Farther out, a ray moves by many triangles along the surface from the sphere to its triangle.
+      if (!hit || past_squared > 0.7) {
+        continue;
+      }
+      EXPECT_EQ(hit->node, node);
+      ASSERT_TRUE(hit->triangle);
+      const glm::dvec3 exact = from_middle + (along - std::sqrt(1.0 - past_squared)) * ray.direction_ws;
+      EXPECT_LT(glm::distance(hit->position_ws - middle, exact), 2.0 * sagitta);
+      EXPECT_LT(glm::length(glm::cross(hit->position_ws - ray.origin_ws, ray.direction_ws)), 1e-6) << "on the ray";
+      EXPECT_LT(glm::distance(weighted(*hit), hit->position_ws), 1e-6);
+      // Interpolation is exact to the second order in the size of a triangle; a neighbour's uvs are wrong by `step`.
+      const glm::dvec3 seen = glm::normalize(hit->position_ws - middle);
+      EXPECT_LT(glm::distance(glm::dvec3(hit->triangle->normal_ws), seen), step * step);
+      EXPECT_NEAR(double(hit->triangle->uv.x), std::atan2(seen.x, seen.z), step * step);
+      EXPECT_NEAR(double(hit->triangle->uv.y), std::acos(seen.y), step * step);
+      count++;
+    }
+  }
+  EXPECT_GT(count, 70);
+}
+
+TEST_F(OverlayGpuTest, APickedTriangleIsTheOneBehindAHoleOfTheSameMeshAndPointsHaveNone)
+{
+  const auto masked = test::add_material(scene, glm::vec3(0.5F));
+  const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
+  scene.edit(masked, [&](scene::Material &material) {
+    material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
+    material.alpha_mode = scene::AlphaMode::Mask;
+  });
+  const auto two_squares = test::add_square_mesh(scene, masked);
+  scene::Mesh mesh = scene.meshes()[two_squares];
+  for (std::size_t i = 0; i < 4; i++) {
+    mesh.positions.push_back(mesh.positions[i] - glm::vec3(0, 0, 1e-3F));
+    mesh.normals.push_back(mesh.normals[i]);
+    mesh.uvs.emplace_back(0.75F, 0.5F);  // No hole.
+  }
+  mesh.indices.insert(mesh.indices.end(), {4, 5, 6, 4, 6, 7});
+  scene.replace(two_squares, mesh);
+  test::add_object(scene, two_squares, glm::dmat4(1));
+  const std::optional<Hit> hole = pick(size_px.x / 2 - 3, size_px.y / 2 + 1);
+  ASSERT_TRUE(hole && hole->triangle);
+  EXPECT_EQ(hole->triangle->index, 3U);
+  EXPECT_NEAR(hole->position_ws.z, -1e-3, 1e-9);
+  EXPECT_EQ(hole->triangle->uv, glm::vec2(0.75F, 0.5F));
+  EXPECT_EQ(pick(size_px.x / 2 + 3, size_px.y / 2 + 1)->triangle->index, 0U);
+
+  mesh.topology = scene::Topology::Lines;
+  mesh.indices = {4, 5, 5, 6, 6, 7, 7, 4};
+  scene.replace(two_squares, mesh);
+  const glm::ivec2 corner = glm::ivec2(seen({-1, -1, -1e-3})) - glm::ivec2(10, 15);
+  std::optional<Hit> line;
+  for (int x = corner.x; x <= corner.x + 1; x++) {
+    line = line ? line : pick(x, corner.y + 3);
+  }
+  ASSERT_TRUE(line);
+  EXPECT_FALSE(line->triangle);
+}
+
 TEST_F(OverlayGpuTest, WhatAMaskCutsOutAndHiddenNodesLetThePixelThrough)
 {
   const auto plain = test::add_material(scene, glm::vec3(0.5F));
@@ -161,6 +386,130 @@ TEST_F(OverlayGpuTest, WhatAMaskCutsOutAndHiddenNodesLetThePixelThrough)
   EXPECT_EQ(picked(), back);
   scene.edit(back, [](scene::Node &node) { node.is_visible = false; });
   EXPECT_EQ(picked(), scene::Handle<scene::Node>());
+}
+
+TEST_F(OverlayGpuTest, APointIsInsideOfAnOutlineThatCrossesALineFromItAnOddNumberOfTimes)
+{
+  const auto square = rectangle({4, 1}, {1, 3});
+  EXPECT_TRUE(is_inside(square, {2, 2}));
+  EXPECT_FALSE(is_inside(square, {0.9, 2}));
+  EXPECT_FALSE(is_inside(square, {2, 3.1}));
+  // Rows through corners.
+  const std::array<glm::dvec2, 4> diamond = {{{0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
+  EXPECT_TRUE(is_inside(diamond, {0, 0}));
+  EXPECT_FALSE(is_inside(diamond, {-2, 0}));
+  EXPECT_FALSE(is_inside(diamond, {2, 1}));
+  // A star of one path: its middle is enclosed twice.
+  std::vector<glm::dvec2> star;
+  for (int i = 0; i < 5; i++) {
+    star.emplace_back(std::sin(0.8 * M_PI * i), std::cos(0.8 * M_PI * i));
+  }
+  EXPECT_FALSE(is_inside(star, {0, 0}));
+  EXPECT_TRUE(is_inside(star, {0, 0.8}));
+  EXPECT_FALSE(is_inside(std::span(star).first(2), {0, 0.5}));
+  EXPECT_FALSE(is_inside({}, {0, 0}));
+}
+
+TEST_F(OverlayGpuTest, AnAreaSelectsWhatRaysThroughItsPixelsMeetFirstOrAtAll)
+{
+  camera = test::camera_at({2, 3, 5}, {0, 0, 0});
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> range(-1.0, 1.0);
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  const auto box = test::add_box_mesh(scene, material);
+  const auto square = test::add_square_mesh(scene, material);
+  for (int i = 0; i < 60; i++) {
+    glm::dmat4 place = glm::translate(glm::dmat4(1), 2.0 * glm::dvec3(range(random), range(random), range(random)));
+    place = glm::rotate(place, 3.0 * range(random), glm::normalize(glm::dvec3(range(random), range(random), 0.1)));
+    test::add_object(scene, i % 2 == 0 ? box : square, glm::scale(place, glm::dvec3(0.3)));
+  }
+  // A second mesh, which must not make the node appear twice.
+  scene.edit(test::handle_at(scene.nodes(), 0), [&](scene::Node &node) { node.meshes.push_back(square); });
+  render_scene->update();
+  const reference::Tracer tracer(scene);
+  const std::vector<scene::Object> objects = scene.objects();
+  const auto nodes_met = [&](std::span<const glm::dvec2> outline, const glm::dvec2 &offset, bool is_through) {
+    std::map<std::uint32_t, int> pixels;
+    for (int y = 0; y < size_px.y; y++) {
+      for (int x = 0; x < size_px.x; x++) {
+        if (!is_inside(outline, glm::dvec2(x, y) + 0.5)) {
+          continue;
+        }
+        std::set<std::uint32_t> met;
+        reference::Ray ray = ray_through(glm::dvec2(x, y) + offset);
+        for (auto hit = tracer.closest(ray, reference::Faces::Drawn); hit;
+             hit = is_through ? tracer.closest(ray, reference::Faces::Drawn) : std::nullopt) {
+          met.insert(objects[tracer.surface_at(*hit).object].node.index);
+          ray.t_min = hit->t + 1e-6;
+        }
+        for (const std::uint32_t node : met) {
+          pixels[node]++;
+        }
+      }
+    }
+    return pixels;
+  };
+  std::size_t found_count = 0;
+  std::size_t hidden_count = 0;
+  for (int i = 0; i < 9; i++) {
+    // Some reach beyond the picture, and those with five corners cross themselves.
+    std::vector<glm::dvec2> outline;
+    for (int corner = 0; corner < 3 + i % 3; corner++) {
+      outline.push_back(glm::dvec2(size_px) * (0.5 + 0.6 * glm::dvec2(range(random), range(random))));
+    }
+    std::size_t visible_count = 0;
+    for (const Reach reach : {Reach::Visible, Reach::Through}) {
+      std::set<std::uint32_t> selected;
+      for (const auto node : overlay->select(view(), size_px, outline, reach)) {
+        EXPECT_TRUE(selected.insert(node.index).second) << "twice";
+      }
+      // The device rounds edges to parts of a pixel.
+      std::map<std::uint32_t, int> possible;
+      for (const glm::dvec2 &offset :
+           {glm::dvec2(0), glm::dvec2(0.02, 0), glm::dvec2(-0.02, 0), glm::dvec2(0, 0.02), glm::dvec2(0, -0.02)}) {
+        for (const auto &[node, count] : nodes_met(outline, offset, reach == Reach::Through)) {
+          possible[node] += count;
+        }
+      }
+      for (const auto &[node, count] : possible) {
+        EXPECT_TRUE(count < 15 || selected.contains(node)) << i << ": " << node << " has " << count / 5 << " pixels";
+      }
+      for (const std::uint32_t node : selected) {
+        EXPECT_TRUE(possible.contains(node)) << i << ": " << node;
+      }
+      found_count += selected.size();
+      hidden_count += reach == Reach::Through ? selected.size() - visible_count : 0;
+      visible_count = selected.size();
+    }
+  }
+  EXPECT_GT(found_count, 100U);
+  EXPECT_GT(hidden_count, 20U);
+}
+
+TEST_F(OverlayGpuTest, AnAreaWithinAHoleOfAMaskOrWithoutAPixelSelectsNothingOfIt)
+{
+  const auto masked = test::add_material(scene, glm::vec3(0.5F));
+  const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
+  scene.edit(masked, [&](scene::Material &material) {
+    material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
+    material.alpha_mode = scene::AlphaMode::Mask;
+  });
+  const auto front = add_square(0, masked);
+  const auto back = add_square(-1, test::add_material(scene, glm::vec3(0.5F)));
+  render_scene->update();
+  using Nodes = std::vector<scene::Handle<scene::Node>>;
+  const auto selected = [&](const glm::dvec2 &from, const glm::dvec2 &to, Reach reach) {
+    return overlay->select(view(), size_px, rectangle(from, to), reach);
+  };
+  const glm::dvec2 middle = 0.5 * glm::dvec2(size_px);
+  EXPECT_EQ(selected(middle - 4.0, middle - 1.0, Reach::Visible), Nodes{back});
+  EXPECT_EQ(selected(middle - 4.0, middle - 1.0, Reach::Through), Nodes{back});
+  EXPECT_EQ(selected(middle + 1.0, middle + 4.0, Reach::Visible), Nodes{front});
+  EXPECT_EQ(selected(middle + 1.0, middle + 4.0, Reach::Through), (Nodes{front, back}));
+  EXPECT_EQ(selected(glm::dvec2(-1e9), glm::dvec2(1e9), Reach::Visible), (Nodes{front, back}));
+  EXPECT_EQ(selected(middle + 1.0, middle + 1.4, Reach::Visible), Nodes()) << "the middle of no pixel";
+  EXPECT_EQ(selected(glm::dvec2(-5), glm::dvec2(-1), Reach::Through), Nodes()) << "beside the picture";
+  EXPECT_THROW(selected(glm::dvec2(NAN), middle, Reach::Visible), gpu::Error);
 }
 
 TEST_F(OverlayGpuTest, PixelsOutsideOfThePictureHaveNothingAndEditsWithoutAnUpdateAreAnError)

@@ -32,6 +32,7 @@ TEST_P(OverlayHostResourcesTest, MeshesInTheHostsBuffersArePickedAndHideLines)
   const auto picked = [&] {
     render_scene.update();
     const std::optional<Hit> hit = overlay.pick(view, size_px, size_px / 2);
+    EXPECT_FALSE(hit && hit->triangle) << "the CPU does not know the triangles";
     return hit ? hit->node : scene::Handle<scene::Node>();
   };
   // A line behind the square.

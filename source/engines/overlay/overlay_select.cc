@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "overlay.hh"
+
+#include "gpu_read.hh"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+namespace gnomon::overlay {
+
+namespace {
+
+/** Where the outline crosses a row of a picture, in ascending order of x. */
+void find_crossings(std::span<const glm::dvec2> corners, double y, std::vector<double> &crossings)
+{
+  crossings.clear();
+  for (std::size_t i = 0; i < corners.size(); i++) {
+    const glm::dvec2 &from = corners[i];
+    const glm::dvec2 &to = corners[(i + 1) % corners.size()];
+    // Each edge with its lower end and without its upper one, so that a row through a corner counts once.
+    if ((from.y <= y) != (to.y <= y)) {
+      crossings.push_back(from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y));
+    }
+  }
+  std::ranges::sort(crossings);
+}
+
+/** The pixels of a picture in the box around an outline; an empty size: none. */
+gpu::Rectangle pixels_around(std::span<const glm::dvec2> corners, glm::ivec2 size_px)
+{
+  const glm::dvec2 size(size_px);
+  glm::dvec2 low = size;
+  glm::dvec2 high(0.0);
+  for (const glm::dvec2 &corner : corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  const glm::ivec2 first(glm::clamp(glm::floor(low), glm::dvec2(0.0), size));
+  const glm::ivec2 end(glm::clamp(glm::ceil(high), glm::dvec2(0.0), size));
+  return {first, glm::max(end - first, glm::ivec2(0))};
+}
+
+/** By pixel of \a region, row by row: 1 if its middle is within the outline. */
+std::vector<std::uint8_t> inside_of(std::span<const glm::dvec2> corners, const gpu::Rectangle &region)
+{
+  std::vector<std::uint8_t> inside(std::size_t(region.size_px.x) * std::size_t(region.size_px.y));
+  std::vector<double> crossings;
+  auto row = inside.begin();
+  for (int y = 0; y < region.size_px.y; y++, row += region.size_px.x) {
+    find_crossings(corners, region.origin_px.y + y + 0.5, crossings);
+    // The first column whose middle is not before x.
+    const auto column = [&](double x) {
+      return std::ptrdiff_t(std::clamp(std::ceil(x - 0.5) - region.origin_px.x, 0.0, double(region.size_px.x)));
+    };
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+      std::fill(row + column(crossings[i]), row + column(crossings[i + 1]), std::uint8_t(1));
+    }
+  }
+  return inside;
+}
+
+}  // namespace
+
+std::array<glm::dvec2, 4> rectangle(const glm::dvec2 &from_px, const glm::dvec2 &to_px)
+{
+  return {from_px, {to_px.x, from_px.y}, to_px, {from_px.x, to_px.y}};
+}
+
+bool is_inside(std::span<const glm::dvec2> corners, const glm::dvec2 &point)
+{
+  std::vector<double> crossings;
+  find_crossings(corners, point.y, crossings);
+  return std::ranges::count_if(crossings, [&](double x) { return x <= point.x; }) % 2 == 1;
+}
+
+std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, glm::ivec2 size_px,
+                                                        std::span<const glm::dvec2> outline_px, Reach reach)
+{
+  check_up_to_date();
+  const auto wrong = std::ranges::find_if(
+      outline_px, [](const glm::dvec2 &corner) { return !(std::isfinite(corner.x) && std::isfinite(corner.y)); });
+  if (wrong != outline_px.end()) {
+    throw gpu::Error("overlay: corner {} of an outline, {}, {}, is not finite", wrong - outline_px.begin(), wrong->x,
+                     wrong->y);
+  }
+  const gpu::Rectangle region = pixels_around(outline_px, size_px);
+  if (region.size_px.x == 0 || region.size_px.y == 0) {
+    return {};
+  }
+  const std::vector<std::uint8_t> inside = inside_of(outline_px, region);
+  const draw::View region_view = view_of_region(view, size_px, region);
+  gpu::Device &device = scene_.device();
+  std::vector<bool> is_found(scene_.objects().index_end());
+  bool has_more = true;
+  for (bool is_first = true; has_more && (is_first || reach == Reach::Through); is_first = false) {
+    has_more = false;
+    gpu::CommandList list;
+    const auto is_left = [&](draw::ObjectIndex object) { return !is_found[object]; };
+    if (!record_objects(region_view, region.size_px, is_left, mask_, list)) {
+      break;
+    }
+    device.submit(list);
+    const std::vector<glm::vec2> texels = gpu::cropped(gpu::read_as<glm::vec2>(device, mask_.objects),
+                                                       mask_.objects.desc().width, {glm::ivec2(0), region.size_px});
+    for (std::size_t i = 0; i < texels.size(); i++) {
+      const auto object = draw::ObjectIndex(texels[i].x);
+      if (inside[i] != 0 && object != draw::object_identity && !is_found[object]) {
+        is_found[object] = has_more = true;
+      }
+    }
+  }
+  std::vector<scene::Handle<scene::Node>> nodes;
+  std::unordered_set<scene::Handle<scene::Node>> known;
+  for (draw::ObjectIndex object = draw::object_identity + 1; object < is_found.size(); object++) {
+    if (is_found[object] && known.insert(scene_.object(object).node).second) {
+      nodes.push_back(scene_.object(object).node);
+    }
+  }
+  return nodes;
+}
+
+}  // namespace gnomon::overlay
