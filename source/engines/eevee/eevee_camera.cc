@@ -64,7 +64,7 @@ draw::View view_around_lens(const draw::View &view)
 {
   const draw::Lens &lens = view.lens();
   if (lens.radius == 0.0F) {
-    return {view.view_from_world(), view.clip_from_view()};
+    return {view.view_from_world(), view.clip_from_view(), {}, view.hidden()};
   }
   // At the distance d, half the view is s d wide, with the slope s. Through a point x of the lens, it is moved by
   // x (1 - d / focus). A view whose eye is max(x) / min(s) behind contains all, with a slope of s + max(x) / focus.
@@ -86,7 +86,7 @@ draw::View view_around_lens(const draw::View &view)
     clip_around[2][axis] = middle / wide[axis];
     view_from_world[3][axis] += middle * back;
   }
-  return {view_from_world, clip_around};
+  return {view_from_world, clip_around, {}, view.hidden()};
 }
 
 }  // namespace gnomon::eevee

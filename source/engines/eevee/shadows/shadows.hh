@@ -163,6 +163,7 @@ class Shadows {
   /** Inputs of visible_. */
   struct Seen {
     glm::mat4 clip_from_world{1.0F};
+    draw::ObjectSet hidden{};
     float pixel_size = 0.0F;
     bool has_depths = false;
 
