@@ -81,7 +81,7 @@ class View {
   View() : View(glm::mat4(1.0F), glm::mat4(1.0F)) {}
   /**
    * View space looks along -Z. \a clip_from_view maps the near plane to z = w and the far plane to z = 0 (reversed
-   * depth). \pre both matrices are finite
+   * depth). \a hidden: the set hidden(). \pre both matrices are finite
    */
   View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens = {}, ObjectSet hidden = {});
 
@@ -105,7 +105,7 @@ class View {
   {
     return hidden_;
   }
-  /** The same view of other objects. */
+  /** The same view, which leaves out \a hidden instead of its own set. */
   [[nodiscard]] View with_hidden(ObjectSet hidden) const;
   [[nodiscard]] bool is_perspective() const
   {

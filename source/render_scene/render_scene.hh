@@ -136,7 +136,8 @@ class RenderScene {
   /**
    * The objects that a viewport leaves out, for draw::View::with_hidden: those of the nodes \a hidden and their
    * descendants; and, unless \a isolated is empty, all that are not of \a isolated or their descendants. Nodes that
-   * were removed are skipped. As the last update() found the objects: call it for each view after an update.
+   * were removed are skipped, so that removed \a isolated nodes leave nothing to show. Objects are those of the last
+   * update(): call it for each view after an update.
    */
   [[nodiscard]] draw::ObjectSet hidden_objects(std::span<const scene::Handle<scene::Node>> hidden,
                                                std::span<const scene::Handle<scene::Node>> isolated = {}) const;

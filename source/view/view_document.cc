@@ -147,12 +147,14 @@ void Document::set_settings(const WindowSettings &settings)
 
 void Document::select(std::span<const scene::Handle<scene::Node>> nodes, bool adds)
 {
-  const std::vector<scene::Handle<scene::Node>> before = adds ? selection() : std::vector<scene::Handle<scene::Node>>();
   std::vector<scene::Handle<scene::Node>> all(nodes.begin(), nodes.end());
-  std::ranges::copy_if(before, std::back_inserter(all),
-                       [&](auto node) { return std::ranges::find(nodes, node) == nodes.end(); });
+  if (adds) {
+    const std::unordered_set<scene::Handle<scene::Node>> known(nodes.begin(), nodes.end());
+    std::ranges::copy_if(selection(), std::back_inserter(all), [&](auto node) { return !known.contains(node); });
+  }
   selected = all.empty() ? scene::Handle<scene::Node>() : all.front();
   others_.assign(all.begin() + (all.empty() ? 0 : 1), all.end());
+  others_known_ = {others_.begin(), others_.end()};
 }
 
 std::vector<scene::Handle<scene::Node>> Document::selection() const
@@ -165,7 +167,7 @@ std::vector<scene::Handle<scene::Node>> Document::selection() const
 
 bool Document::is_selected(scene::Handle<scene::Node> node) const
 {
-  return node == selected || std::ranges::find(others_, node) != others_.end();
+  return node == selected || others_known_.contains(node);
 }
 
 void Document::click(const std::optional<overlay::Hit> &hit, bool adds)

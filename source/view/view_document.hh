@@ -17,6 +17,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace gnomon::view {
@@ -58,7 +59,7 @@ class Document {
    * alone. \throws scene::InvalidEdit and changes nothing
    */
   void set_world_picture(std::shared_ptr<const scene::WorldPicture> picture);
-  /** A node that undo or redo restores becomes selected. */
+  /** The nodes that undo or redo restores become selected. */
   bool undo();
   bool redo();
   [[nodiscard]] History &history()
@@ -66,7 +67,7 @@ class Document {
     return history_;
   }
 
-  /** Show or hide the selected nodes, as an edit of the scene: all as `selected` is not. */
+  /** Hide the selected nodes if `selected` is shown, otherwise show them, as an edit of the scene. */
   void toggle_visibility();
   /** Add a node and select it. \see view::add */
   void add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view);
@@ -147,7 +148,7 @@ class Document {
     return settings_revision_;
   }
 
-  /** The node that panels, gizmo, transforms and duplicates are of. Invalid handle: no node is selected. */
+  /** Panels, the gizmo, transforms and duplicates use this node. Invalid handle: no node is selected. */
   scene::Handle<scene::Node> selected{};
   /**
    * Select \a nodes, of which the first becomes `selected`. \a adds: beside those that are selected; otherwise in place
@@ -161,9 +162,9 @@ class Document {
   /** `selected` and the nodes that are selected beside it; those that were removed are left out. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selection() const;
   [[nodiscard]] bool is_selected(scene::Handle<scene::Node> node) const;
-  /** Select what a click in a picture met: a surface; empty: nothing. \a adds: \see select */
+  /** Select the surface that a click in a picture met; empty: nothing. \a adds: \see select */
   void click(const std::optional<overlay::Hit> &hit, bool adds = false);
-  /** What the last click met. nullptr: no surface of the selected node, or the scene has changed since. */
+  /** The surface that the last click met. nullptr: none of the selected node, or the scene has changed since. */
   [[nodiscard]] const overlay::Hit *clicked() const
   {
     const bool is_shown = clicked_ && clicked_->node == selected && clicked_revision_ == scene_.revision();
@@ -177,6 +178,8 @@ class Document {
   [[nodiscard]] scene::Handle<scene::Node> find(const std::string &name) const;
 
  private:
+  /** After undo or redo. */
+  void follow_history();
   /** Deform meshes whose joints an edit has moved, removed or restored. */
   void deform();
 
@@ -196,6 +199,8 @@ class Document {
   scene::Revision saved_revision_ = 0;
   /** Nodes that are selected beside `selected`. */
   std::vector<scene::Handle<scene::Node>> others_;
+  /** The same nodes, to look them up. */
+  std::unordered_set<scene::Handle<scene::Node>> others_known_;
   std::optional<overlay::Hit> clicked_;
   /** scene::Scene::revision at the last click. */
   scene::Revision clicked_revision_ = 0;

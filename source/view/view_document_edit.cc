@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Edits of what is selected.
+// Edits of the selected nodes.
 #include "view_document.hh"
 
 #include <utility>
@@ -29,23 +29,29 @@ void Document::deform()
   }
 }
 
+void Document::follow_history()
+{
+  deform();
+  if (!history_.restored().empty()) {
+    select(history_.restored());
+  }
+  else if (!scene_.nodes().is_live(selected)) {
+    // The nodes beside an addition that was undone.
+    select(selection());
+  }
+}
+
 bool Document::undo()
 {
   const bool is_undone = history_.undo(scene_);
-  deform();
-  if (history_.restored()) {
-    select(history_.restored());
-  }
+  follow_history();
   return is_undone;
 }
 
 bool Document::redo()
 {
   const bool is_redone = history_.redo(scene_);
-  deform();
-  if (history_.restored()) {
-    select(history_.restored());
-  }
+  follow_history();
   return is_redone;
 }
 

@@ -62,28 +62,33 @@ void History::remove_members(scene::Scene &scene, const SubtreeChange &change)
 
 void History::restore_members(scene::Scene &scene, const SubtreeChange &change)
 {
-  restored_ = change.members.front().node;
+  const Handle<Node> root = change.members.front().node;
   for (const SubtreeChange::Member &member : change.members) {
-    scene.restore(member.node, member.value, member.parent, member.node == restored_ ? change.next : Handle<Node>());
+    scene.restore(member.node, member.value, member.parent, member.node == root ? change.next : Handle<Node>());
   }
+  restored_.push_back(root);
 }
 
-void History::add(Content content)
+void History::add(Change change)
 {
-  changes_.erase(changes_.begin() + std::ptrdiff_t(done_count_), changes_.end());
-  changes_.push_back({std::move(content), joined_from_ && *joined_from_ < done_count_});
-  if (changes_.size() > change_max) {
-    changes_.pop_front();
-    changes_.front().is_joined = false;
-    joined_from_ = joined_from_ ? std::optional(std::max<std::size_t>(*joined_from_, 1) - 1) : std::nullopt;
+  steps_.erase(steps_.begin() + std::ptrdiff_t(done_count_), steps_.end());
+  if (is_step_open_) {
+    steps_.back().push_back(std::move(change));
   }
-  done_count_ = changes_.size();
+  else {
+    steps_.emplace_back().push_back(std::move(change));
+    if (steps_.size() > step_max) {
+      steps_.pop_front();
+    }
+  }
+  done_count_ = steps_.size();
   is_in_gesture_ = true;
+  is_step_open_ = is_joining_;
 }
 
-void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
+void History::apply(scene::Scene &scene, const Change &change, bool is_undone)
 {
-  if (const auto *subtree = std::get_if<SubtreeChange>(&changes_[index].content)) {
+  if (const auto *subtree = std::get_if<SubtreeChange>(&change)) {
     if (subtree->is_addition == is_undone) {
       remove_members(scene, *subtree);
     }
@@ -101,41 +106,38 @@ void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
           scene.set_world(is_undone ? one.before : one.after);
         }
       },
-      changes_[index].content);
+      change);
 }
 
 void History::revert_gesture(scene::Scene &scene)
 {
   if (is_in_gesture_ && undo(scene)) {
-    changes_.erase(changes_.begin() + std::ptrdiff_t(done_count_), changes_.end());
+    steps_.erase(steps_.begin() + std::ptrdiff_t(done_count_), steps_.end());
   }
   is_in_gesture_ = false;
 }
 
 bool History::undo(scene::Scene &scene)
 {
-  restored_ = {};
+  restored_.clear();
   if (done_count_ == 0) {
     return false;
   }
-  do {
-    apply(scene, done_count_ - 1, true);
-    done_count_--;
-  } while (changes_[done_count_].is_joined);
+  done_count_--;
+  const Step &step = steps_[done_count_];
+  std::for_each(step.rbegin(), step.rend(), [&](const Change &change) { apply(scene, change, true); });
   is_in_gesture_ = false;
   return true;
 }
 
 bool History::redo(scene::Scene &scene)
 {
-  restored_ = {};
-  if (done_count_ == changes_.size()) {
+  restored_.clear();
+  if (done_count_ == steps_.size()) {
     return false;
   }
-  do {
-    apply(scene, done_count_, false);
-    done_count_++;
-  } while (done_count_ < changes_.size() && changes_[done_count_].is_joined);
+  std::ranges::for_each(steps_[done_count_], [&](const Change &change) { apply(scene, change, false); });
+  done_count_++;
   is_in_gesture_ = false;
   return true;
 }

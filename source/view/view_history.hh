@@ -19,8 +19,8 @@ namespace gnomon::view {
  */
 class History {
  public:
-  /** Maximum number of changes; the oldest are dropped first. This bounds the memory of a long session. */
-  static constexpr std::size_t change_max = 1000;
+  /** Maximum number of undo steps; the oldest are dropped first. This bounds the memory of a long session. */
+  static constexpr std::size_t step_max = 1000;
 
   /** Edit \a thing by \a change and record the edit. \throws as scene::Scene::edit; nothing changes then */
   template <typename T, std::invocable<T &> Change>
@@ -45,21 +45,12 @@ class History {
   void note_added(const scene::Scene &scene, scene::Handle<scene::Node> root);
   /** Remove \a root with its descendants. Their lamps, cameras and meshes stay in the scene. */
   void remove(scene::Scene &scene, scene::Handle<scene::Node> root);
-  /** What \a work changes is one undo step. */
+  /** All changes of \a work are one undo step. */
   template <std::invocable Work>
   void join(Work &&work)
   {
-    end_gesture();
-    joined_from_ = done_count_;
-    try {
-      work();
-    }
-    catch (...) {
-      joined_from_.reset();
-      throw;
-    }
-    joined_from_.reset();
-    end_gesture();
+    const Joining joining(*this);
+    work();
   }
   /** End a gesture. Edits of one thing within a gesture, as by a slider, are one undo step. */
   void end_gesture()
@@ -72,8 +63,8 @@ class History {
   /** \return whether there was a step to undo, or to redo */
   bool undo(scene::Scene &scene);
   bool redo(scene::Scene &scene);
-  /** Root node that the last undo or redo restored. Invalid handle: none. */
-  [[nodiscard]] scene::Handle<scene::Node> restored() const
+  /** Root nodes that the last undo or redo restored. */
+  [[nodiscard]] const std::vector<scene::Handle<scene::Node>> &restored() const
   {
     return restored_;
   }
@@ -83,7 +74,7 @@ class History {
   }
   [[nodiscard]] std::size_t redo_count() const
   {
-    return changes_.size() - done_count_;
+    return steps_.size() - done_count_;
   }
 
  private:
@@ -110,34 +101,53 @@ class History {
     /** The change added the nodes. False: it removed them. */
     bool is_addition = false;
   };
-  using Content = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Camera>,
-                               ThingChange<scene::Material>, WorldChange, SubtreeChange>;
-  struct Change {
-    Content content;
-    /** It is undone and redone with the change before it. */
-    bool is_joined = false;
+  using Change = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Camera>,
+                              ThingChange<scene::Material>, WorldChange, SubtreeChange>;
+  using Step = std::vector<Change>;
+
+  /** While it exists, changes are added to one step. */
+  class Joining {
+   public:
+    explicit Joining(History &history) : history_(history)
+    {
+      history_.end_gesture();
+      history_.is_joining_ = true;
+    }
+    ~Joining()
+    {
+      history_.end_gesture();
+      history_.is_joining_ = false;
+      history_.is_step_open_ = false;
+    }
+    Joining(const Joining &) = delete;
+    Joining &operator=(const Joining &) = delete;
+
+   private:
+    History &history_;
   };
 
   /** The last change if it is of type \a Kind and belongs to the current gesture; otherwise nullptr. */
   template <typename Kind>
   Kind *mergeable()
   {
-    const bool is_last = is_in_gesture_ && done_count_ > 0 && done_count_ == changes_.size();
-    return is_last ? std::get_if<Kind>(&changes_.back().content) : nullptr;
+    const bool is_last = is_in_gesture_ && done_count_ > 0 && done_count_ == steps_.size();
+    return is_last ? std::get_if<Kind>(&steps_.back().back()) : nullptr;
   }
-  void add(Content content);
-  void apply(scene::Scene &scene, std::size_t index, bool is_undone);
+  void add(Change change);
+  void apply(scene::Scene &scene, const Change &change, bool is_undone);
   [[nodiscard]] static SubtreeChange subtree(const scene::Scene &scene, scene::Handle<scene::Node> root);
   static void remove_members(scene::Scene &scene, const SubtreeChange &change);
   void restore_members(scene::Scene &scene, const SubtreeChange &change);
 
-  std::deque<Change> changes_;
-  /** Number of changes that are applied; the later ones were undone. */
+  /** None is empty. */
+  std::deque<Step> steps_;
+  /** Number of steps that are applied; the later ones were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
-  /** During join: the number of changes before it. */
-  std::optional<std::size_t> joined_from_;
-  scene::Handle<scene::Node> restored_{};
+  bool is_joining_ = false;
+  /** The next change belongs to the last step. */
+  bool is_step_open_ = false;
+  std::vector<scene::Handle<scene::Node>> restored_;
 };
 
 }  // namespace gnomon::view

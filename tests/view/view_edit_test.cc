@@ -281,9 +281,9 @@ TEST(ViewHistoryTest, WhatWasRemovedComesBackWithItsEditsWhereItWasAndCanBeEdite
 
   EXPECT_TRUE(history.undo(scene));
   EXPECT_EQ(names(), edited);
-  EXPECT_EQ(history.restored(), root) << "what names it names it again";
+  ASSERT_EQ(history.restored(), std::vector{root}) << "with its old handle";
   // The edit from before the removal is undone on the node that came back.
-  const auto restored_child = scene.first_child(history.restored());
+  const auto restored_child = scene.first_child(history.restored()[0]);
   EXPECT_EQ(restored_child, child);
   EXPECT_FALSE(scene.nodes()[restored_child].is_visible);
   EXPECT_TRUE(history.undo(scene));
@@ -325,7 +325,7 @@ TEST(ViewHistoryTest, AChildComesBackBetweenItsSiblings)
   EXPECT_TRUE(history.undo(scene));
   EXPECT_EQ(names(), "1234");
   EXPECT_FALSE(history.undo(scene));
-  EXPECT_FALSE(history.restored()) << "nothing was undone";
+  EXPECT_TRUE(history.restored().empty()) << "nothing was undone";
 }
 
 TEST(ViewHistoryTest, AnAdditionIsUndoneAndRedoneAlsoWithLaterEditsOfIt)
@@ -341,13 +341,13 @@ TEST(ViewHistoryTest, AnAdditionIsUndoneAndRedoneAlsoWithLaterEditsOfIt)
     EXPECT_TRUE(history.undo(scene));
     EXPECT_TRUE(scene.nodes().empty());
     EXPECT_TRUE(history.redo(scene));
-    EXPECT_EQ(scene.nodes()[history.restored()].name, "added");
+    EXPECT_EQ(scene.nodes()[history.restored().at(0)].name, "added");
     EXPECT_TRUE(history.redo(scene));
     EXPECT_EQ((*scene.nodes().begin()).value.name, "edited");
   }
 }
 
-TEST(ViewHistoryTest, WhatIsJoinedIsOneStepAlsoAfterTheOldestChangesAreForgotten)
+TEST(ViewHistoryTest, JoinedChangesAreOneStepOfAnyLength)
 {
   scene::Scene scene;
   History history;
@@ -382,21 +382,30 @@ TEST(ViewHistoryTest, WhatIsJoinedIsOneStepAlsoAfterTheOldestChangesAreForgotten
   EXPECT_TRUE(history.undo(scene));
   EXPECT_EQ(hidden(), 0);
   EXPECT_FALSE(history.undo(scene));
-  // What fails joins nothing with what follows.
-  EXPECT_THROW(history.join([] { throw std::runtime_error("no"); }), std::runtime_error);
+  // A step that ends by an exception has the changes before it, and none of those that follow.
+  EXPECT_THROW(history.join([&] {
+    history.edit(scene, nodes[0], hide);
+    throw std::runtime_error("no");
+  }),
+               std::runtime_error);
   history.edit(scene, nodes[0], hide);
   history.end_gesture();
   history.edit(scene, nodes[1], hide);
+  EXPECT_EQ(history.undo_count(), 3U);
+  EXPECT_TRUE(history.undo(scene));
   EXPECT_TRUE(history.undo(scene));
   EXPECT_EQ(hidden(), 1);
   EXPECT_TRUE(history.undo(scene));
-  // More changes than are kept: the rest of the step is one.
+  EXPECT_EQ(hidden(), 0);
+  // More changes than steps are kept.
   history.join([&] {
-    for (std::size_t i = 0; i < History::change_max + 3; i++) {
+    for (std::size_t i = 0; i < 2 * History::step_max + 1; i++) {
       history.edit(scene, nodes[i % 2], hide);
     }
   });
+  EXPECT_EQ(hidden(), 1);
   EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(hidden(), 0);
   EXPECT_FALSE(history.undo(scene));
 }
 
@@ -653,7 +662,14 @@ TEST(ViewDocumentTest, SeveralNodesAreSelectedTheFirstOfThemForThePanelsAndWhatI
   EXPECT_TRUE(document.undo());
   EXPECT_EQ(document.scene().nodes().size(), 4U);
   EXPECT_EQ(document.scene().parent(child), nodes[0]);
+  EXPECT_EQ(document.selected_nodes().size(), 3U) << "the nodes that were restored";
   EXPECT_FALSE(document.undo());
+
+  document.add(additions().front(), glm::dvec3(0.0), glm::dmat4(1.0));
+  document.select(nodes[1], true);
+  document.select(document.selection().back(), true);
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(document.selected, nodes[1]) << "the node beside the one that is gone";
 }
 
 TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndone)

@@ -62,17 +62,17 @@ TEST(ViewHistoryTest, TheOldestChangesAreForgotten)
   scene::Scene scene;
   History history;
   const auto lamp = scene.add(scene::Lamp{.intensity = 0.0F});
-  for (std::size_t i = 1; i <= History::change_max + 5; i++) {
+  for (std::size_t i = 1; i <= History::step_max + 5; i++) {
     history.edit(scene, lamp, [&](scene::Lamp &edited) { edited.intensity = float(i); });
     history.end_gesture();
   }
-  EXPECT_EQ(history.undo_count(), History::change_max);
+  EXPECT_EQ(history.undo_count(), History::step_max);
   while (history.undo(scene)) {
   }
   EXPECT_EQ(scene.lamps()[lamp].intensity, 5.0F);
   while (history.redo(scene)) {
   }
-  EXPECT_EQ(scene.lamps()[lamp].intensity, float(History::change_max + 5));
+  EXPECT_EQ(scene.lamps()[lamp].intensity, float(History::step_max + 5));
 }
 
 TEST(ViewHistoryTest, AnInvalidEditChangesNothingAndIsNotRemembered)

@@ -41,7 +41,10 @@ struct Hit {
   scene::Handle<scene::Mesh> mesh;
   /** World space of the scene, metres. On the triangle, if there is one; otherwise from the depth of the pixel. */
   glm::dvec3 position_ws{0.0};
-  /** Of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host. */
+  /**
+   * Of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host, and where rounding leaves
+   * no triangle at the drawn depth.
+   */
   std::optional<TrianglePoint> triangle{};
 };
 
@@ -49,7 +52,7 @@ struct Hit {
 enum class Reach {
   /** Those that are seen there. */
   Visible,
-  /** Also those that others hide. */
+  /** Also those that others cover. */
   Through
 };
 
@@ -107,6 +110,7 @@ class Overlay {
    *
    * Draws the objects in the rectangle around the outline once for Reach::Visible, and reads that back. Reach::Through
    * repeats it without the objects that were found until there are no more, as often as objects lie behind each other.
+   * \throws gpu::Error if a corner is not finite
    */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> select(const draw::View &view, glm::ivec2 size_px,
                                                                std::span<const glm::dvec2> outline_px, Reach reach);
