@@ -136,7 +136,7 @@ class App {
   /** Leave the selected nodes out of the active viewport, or all others. A message says if none is selected. */
   void hide_selected();
   void isolate_selected();
-  /** Select through objects in the active viewport, or what is seen. */
+  /** Areas in the active viewport select also covered objects, or again only visible ones. */
   void toggle_reach();
   /**
    * Start fly mode: keys and pointer move the eye of the active viewport until Enter, Escape or a mouse button ends it.

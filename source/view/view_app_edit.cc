@@ -29,8 +29,13 @@ void App::take_key(const KeyPress &press)
 
 void App::begin_transform(TransformKind kind)
 {
-  if (!document_ || !active().viewport() || !document_->scene().nodes().is_live(document_->selected)) {
+  const scene::Node *node = document_ ? document_->scene().nodes().find(document_->selected) : nullptr;
+  if (!node || !active().viewport()) {
     message("Nothing is selected", false);
+    return;
+  }
+  if (active().is_hidden(document_->scene(), document_->selected)) {
+    message(fmt::format("{}: is hidden in this viewport", node->name), false);
     return;
   }
   try {
@@ -96,7 +101,7 @@ void App::hide_selected()
 
 void App::isolate_selected()
 {
-  if (!document_ || (!active().is_isolated() && document_->selection().empty())) {
+  if (!document_ || (!active().is_isolated(document_->scene()) && document_->selection().empty())) {
     message("Nothing is selected", false);
     return;
   }
@@ -107,7 +112,7 @@ void App::toggle_reach()
 {
   const bool is_through = active().reach == overlay::Reach::Through;
   active().reach = is_through ? overlay::Reach::Visible : overlay::Reach::Through;
-  message(is_through ? "An area selects what is seen" : "An area selects also what is hidden", false);
+  message(is_through ? "An area selects visible objects" : "An area selects visible and covered objects", false);
 }
 
 void App::begin_fly()

@@ -43,6 +43,14 @@ void require(App &app, bool is_done)
   }
 }
 
+/** \throws std::runtime_error with the syntax of the command \a name if \a is_right is false */
+void require_usage(std::string_view name, bool is_right)
+{
+  if (!is_right) {
+    throw std::runtime_error(fmt::format("usage: {} {}", name, find_command(name)->usage));
+  }
+}
+
 void open(App &app, Words words)
 {
   require(app, app.open(words[0]));
@@ -174,9 +182,7 @@ void select_box(App &app, Words words)
 
 void select_lasso(App &app, Words words)
 {
-  if (words.size() % 2 != 0) {
-    throw std::runtime_error("usage: lasso X Y X Y X Y...");
-  }
+  require_usage("lasso", words.size() % 2 == 0);
   std::vector<glm::dvec2> path;
   for (std::size_t i = 0; i < words.size(); i += 2) {
     path.emplace_back(pixel(words[i], words[i + 1]));
@@ -340,9 +346,7 @@ void drag_handle(App &app, Words words)
 /** Click at one position in the window, or drag between two. */
 void use_pointer(App &app, Words words)
 {
-  if (words.size() == 3) {
-    throw std::runtime_error("usage: pointer X Y [TO_X TO_Y]");
-  }
+  require_usage("pointer", words.size() != 3);
   const glm::ivec2 from = pixel(words[0], words[1]);
   app.window().drag_pointer(from, words.size() == 4 ? pixel(words[2], words[3]) : from);
 }

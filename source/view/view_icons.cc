@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_set>
 
 namespace gnomon::view {
 
@@ -159,12 +160,13 @@ void add_camera(const Place &place, const scene::PlacedCamera &camera)
 }  // namespace
 
 std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMap &map,
-                                      scene::Handle<scene::Node> selected,
+                                      std::span<const scene::Handle<scene::Node>> selected,
                                       const std::function<bool(scene::Handle<scene::Node>)> &is_shown)
 {
   std::vector<overlay::Line> lines;
+  const std::unordered_set<scene::Handle<scene::Node>> highlighted(selected.begin(), selected.end());
   const auto brush = [&](scene::Handle<scene::Node> node, const glm::vec4 &color) {
-    const bool is_selected = node == selected;
+    const bool is_selected = highlighted.contains(node);
     return LineBrush{lines, is_selected ? selected_color : color, 1.5F, is_selected};
   };
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {

@@ -117,7 +117,7 @@ void App::show_view_menu()
   if (ImGui::MenuItem("Hide selected here", "Shift+H")) {
     hide_selected();
   }
-  if (ImGui::MenuItem("Show all here", "Alt+H", false, active().is_hiding())) {
+  if (ImGui::MenuItem("Show all here", "Alt+H", false, active().is_hiding(document_->scene()))) {
     active().show_all();
   }
   if (ImGui::MenuItem("Select through objects", "Alt+Z", active().reach == overlay::Reach::Through)) {

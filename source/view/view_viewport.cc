@@ -28,6 +28,7 @@ void WindowViewport::close()
   synced_ = {};
   density_key_ = {};
   error_.restart();
+  dark_picture_.reset();
   is_complete_ = false;
   is_transforming_ = false;
   area_.reset();
@@ -121,12 +122,20 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   const bool is_synced = is_same && !has_failed_;
   follow(document);
   draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
-  std::erase_if(isolated_, [&](auto node) { return !document.scene().nodes().is_live(node); });
-  if (!hidden_.empty() || !isolated_.empty()) {
-    view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated_));
+  if (is_hiding(document.scene())) {
+    // Without a live node nothing is isolated; render_scene would leave out all objects.
+    std::span<const scene::Handle<scene::Node>> isolated;
+    if (is_isolated(document.scene())) {
+      isolated = isolated_;
+    }
+    view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated));
   }
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
+    // Not before, as each picture of a moving view would cost the time of the look.
+    if (auto *eevee = has_failed_ ? nullptr : dynamic_cast<eevee::Engine *>(&document.engine(engine))) {
+      look_around(*eevee);
+    }
     return true;
   }
   // Store the key before drawing: after a failure, drawing is tried again only when the key changes.
@@ -176,10 +185,8 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   draw_overlays(document, target);
   has_failed_ = false;
   is_complete_ = !eevee || (!is_preview && eevee->is_complete(*viewport_));
-  if (eevee && is_complete_) {
-    look_around(*eevee);
-  }
-  return is_complete_;
+  // The next draw looks around, if the view rests.
+  return is_complete_ && (!eevee || dark_picture_ == viewport_->restart_count());
 }
 
 void WindowViewport::look_around(draw::Engine &engine)
@@ -248,7 +255,7 @@ void WindowViewport::draw_overlays(Document &document, const draw::Target &targe
     return;
   }
   overlay_->draw_outline(drawn_view_, size_px_, document.selected_nodes(), outline_color, target);
-  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selected,
+  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selection(),
                                                 [&](auto node) { return !is_hidden(document.scene(), node); });
   const std::optional<Gizmo> gizmo = gizmo_of(document);
   if (document.operation() || gizmo) {

@@ -35,8 +35,8 @@ class WindowViewport {
   [[nodiscard]] scene::PlacedCamera camera(const Document &document) const;
 
   /**
-   * Draw the next sample, if the picture needs more. \a budget_seconds: \see eevee::BudgetedPicture; 0: no budget
-   * \return whether it is complete \throws gpu::Error
+   * Draw the next sample, if the picture needs more. \a budget_seconds: \see eevee::BudgetedPicture; 0: no budget.
+   * \return whether no more draws are needed: the picture is complete, and dark_inside is known \throws gpu::Error
    */
   bool draw(Document &document, double budget_seconds);
   /**
@@ -51,22 +51,18 @@ class WindowViewport {
    */
   void pick(Document &document, glm::ivec2 pixel_px, bool adds = false);
   /**
-   * Select the nodes in an area: what overlay::Overlay::select finds, and lamps and cameras. \a outline_px: pixels as
-   * for pick. \pre draw was called
+   * Select the nodes in an area: those that overlay::Overlay::select finds, and lamps and cameras. \a outline_px:
+   * pixels as for pick. \pre draw was called
    */
   void select_area(Document &document, std::span<const glm::dvec2> outline_px, overlay::Reach reach, bool adds);
   /** Leave the selected nodes and their descendants out of this viewport's pictures. */
   void hide(const Document &document);
   /** Leave all but the selected nodes and their descendants out; the second call shows the others again. */
   void isolate(const Document &document);
-  [[nodiscard]] bool is_isolated() const
-  {
-    return !isolated_.empty();
-  }
-  [[nodiscard]] bool is_hiding() const
-  {
-    return !isolated_.empty() || !hidden_.empty();
-  }
+  /** Whether the viewport isolates a node that the scene still has. */
+  [[nodiscard]] bool is_isolated(const scene::Scene &scene) const;
+  /** Whether the viewport isolates or hides a node that the scene still has. */
+  [[nodiscard]] bool is_hiding(const scene::Scene &scene) const;
   /** Undo hide and isolate. */
   void show_all();
   /** Whether the node is left out of this viewport. */
@@ -189,7 +185,7 @@ class WindowViewport {
   void limit_time(const Document &document, eevee::Engine &eevee);
   /** With a maximum error: end a picture that has reached it, or that has all its samples. */
   void limit_error(const Document &document, eevee::Engine &eevee);
-  /** Update dark_inside for a complete picture by \a engine. */
+  /** Update dark_inside for the complete picture by \a engine, once for each picture. */
   void look_around(draw::Engine &engine);
   /** Read back the picture that \a write writes to a target. */
   [[nodiscard]] std::vector<float> read_written(gpu::Device &device,
@@ -210,11 +206,11 @@ class WindowViewport {
   /** Follow a drag that selects an area. \return whether there is one; it then consumes the pointer's input */
   bool take_area(Document &document, glm::vec2 corner);
   void show_area(glm::vec2 corner) const;
-  /** Say over the picture what is left out, and why it is black. */
+  /** Write over the picture how many nodes are left out or isolated, and why it is black. */
   void show_notes(const Document &document, glm::vec2 corner, glm::vec2 size) const;
   /** \return whether an operation is running; it then consumes the pointer's input */
   bool take_operation(Document &document);
-  /** The gizmo at the selected node. Empty: not shown. */
+  /** The gizmo at the selected node. Empty: there is none, or the node is hidden in this viewport. */
   [[nodiscard]] std::optional<Gizmo> gizmo_of(Document &document) const;
   /** Pixel of a point, counted as for pick. Empty: outside of the picture. */
   [[nodiscard]] std::optional<glm::vec2> place_of(const glm::dvec3 &position_ws) const;
@@ -265,7 +261,7 @@ class WindowViewport {
   bool is_complete_ = false;
   /** The last draw threw. */
   bool has_failed_ = false;
-  /** Whether the pointer has moved since its button went down. */
+  /** The press of the button is used, by a drag or an operation: it selects nothing and starts no area. */
   bool is_dragged_ = false;
   /** An operation was running in the last frame, in any viewport. */
   bool had_operation_ = false;
@@ -278,7 +274,7 @@ class WindowViewport {
   /** The drag moves a handle, until the button is released. */
   bool is_handle_dragged_ = false;
   std::optional<Area> area_;
-  /** \see hide, isolate */
+  /** \see hide, isolate. Removed nodes stay in the lists, as undo may restore them. */
   std::vector<scene::Handle<scene::Node>> hidden_;
   std::vector<scene::Handle<scene::Node>> isolated_;
 };

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace gnomon::view {
@@ -16,6 +18,11 @@ namespace {
 constexpr float lamp_radius_px = 6.0F;
 /** The turn for a pointer that moves by the picture's height, radians. */
 constexpr double orbit_angle = 3.0;
+
+std::ptrdiff_t count_live(const scene::Scene &scene, std::span<const scene::Handle<scene::Node>> nodes)
+{
+  return std::ranges::count_if(nodes, [&](auto node) { return scene.nodes().is_live(node); });
+}
 
 }  // namespace
 
@@ -33,17 +40,22 @@ void WindowViewport::pick(Document &document, glm::ivec2 pixel_px, bool adds)
     const std::optional<glm::vec2> place = place_of(glm::dvec3(world[3]));
     return place && glm::distance(*place, glm::vec2(pixel_px) + 0.5F) <= lamp_radius_px + 2.0F;
   };
+  const auto select = [&](scene::Handle<scene::Node> node) {
+    // The click met no surface.
+    document.click(std::nullopt, adds);
+    document.select(node, adds);
+  };
   if (has_overlays) {
     for (const scene::PlacedLamp &lamp : document.scene().placed_lamps()) {
       if (is_at(lamp.world_from_lamp) && !is_hidden(document.scene(), lamp.node)) {
-        document.select(lamp.node, adds);
+        select(lamp.node);
         return;
       }
     }
     for (const scene::PlacedCamera &camera : document.scene().placed_cameras()) {
       if (is_at(camera.world_from_camera) && document.scene().is_visible(camera.node) &&
           !is_hidden(document.scene(), camera.node)) {
-        document.select(camera.node, adds);
+        select(camera.node);
         return;
       }
     }
@@ -82,13 +94,23 @@ void WindowViewport::select_area(Document &document, std::span<const glm::dvec2>
 
 void WindowViewport::hide(const Document &document)
 {
-  const std::vector<scene::Handle<scene::Node>> nodes = document.selection();
-  hidden_.insert(hidden_.end(), nodes.begin(), nodes.end());
+  std::ranges::copy_if(document.selection(), std::back_inserter(hidden_),
+                       [&](auto node) { return std::ranges::find(hidden_, node) == hidden_.end(); });
 }
 
 void WindowViewport::isolate(const Document &document)
 {
-  isolated_ = isolated_.empty() ? document.selection() : std::vector<scene::Handle<scene::Node>>();
+  isolated_ = is_isolated(document.scene()) ? std::vector<scene::Handle<scene::Node>>() : document.selection();
+}
+
+bool WindowViewport::is_isolated(const scene::Scene &scene) const
+{
+  return count_live(scene, isolated_) > 0;
+}
+
+bool WindowViewport::is_hiding(const scene::Scene &scene) const
+{
+  return is_isolated(scene) || count_live(scene, hidden_) > 0;
 }
 
 void WindowViewport::show_all()
@@ -99,14 +121,14 @@ void WindowViewport::show_all()
 
 bool WindowViewport::is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const
 {
-  bool is_isolated = isolated_.empty();
+  bool is_shown = !is_isolated(scene);
   for (scene::Handle<scene::Node> one = node; one; one = scene.parent(one)) {
     if (std::ranges::find(hidden_, one) != hidden_.end()) {
       return true;
     }
-    is_isolated |= std::ranges::find(isolated_, one) != isolated_.end();
+    is_shown |= std::ranges::find(isolated_, one) != isolated_.end();
   }
-  return !is_isolated;
+  return !is_shown;
 }
 
 std::vector<glm::dvec2> WindowViewport::Area::outline_px() const
@@ -124,23 +146,22 @@ void WindowViewport::show_notes(const Document &document, glm::vec2 corner, glm:
     ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {corner.x + 8.0F, corner.y + y},
                                         IM_COL32(255, 255, 255, 255), text.c_str(), nullptr, size.x - 16.0F);
   };
-  if (!isolated_.empty()) {
-    write(size.y - 24.0F, fmt::format("{} isolated: / shows all", isolated_.size()));
+  if (const auto isolated_count = count_live(document.scene(), isolated_); isolated_count > 0) {
+    write(size.y - 24.0F, fmt::format("{} isolated: / shows all", isolated_count));
   }
-  else if (!hidden_.empty()) {
-    write(size.y - 24.0F, fmt::format("{} hidden: Alt+H shows all", hidden_.size()));
+  else if (const auto hidden_count = count_live(document.scene(), hidden_); hidden_count > 0) {
+    write(size.y - 24.0F, fmt::format("{} hidden: Alt+H shows all", hidden_count));
   }
   if (const auto node = dark_inside(); node && document.scene().nodes().is_live(*node)) {
-    write(0.5F * size.y,
-          fmt::format("All that is seen is the back of {}, where no light is: the eye may be inside. Home shows all.",
-                      document.scene().nodes()[*node].name));
+    write(0.5F * size.y, fmt::format("All that is seen is the unlit back of {}: the eye may be inside. Home shows all.",
+                                     document.scene().nodes()[*node].name));
   }
 }
 
 bool WindowViewport::take_area(Document &document, glm::vec2 corner)
 {
   const ImGuiIO &io = ImGui::GetIO();
-  if (!area_ && ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left) && !io.KeyAlt) {
+  if (!is_dragged_ && ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left) && !io.KeyAlt) {
     const ImVec2 &from = io.MouseClickedPos[ImGuiMouseButton_Left];
     area_ = {{glm::dvec2(from.x - corner.x, from.y - corner.y)}, io.KeyCtrl};
     is_dragged_ = true;
@@ -149,6 +170,7 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
     return false;
   }
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+    // The press stays used: is_dragged_.
     area_.reset();
     return true;
   }
@@ -175,7 +197,8 @@ void WindowViewport::show_area(glm::vec2 corner) const
 
 std::optional<Gizmo> WindowViewport::gizmo_of(Document &document) const
 {
-  if (!document.gizmo || !document.scene().nodes().is_live(document.selected)) {
+  if (!document.gizmo || !document.scene().nodes().is_live(document.selected) ||
+      is_hidden(document.scene(), document.selected)) {
     return std::nullopt;
   }
   return Gizmo{document.scene().world_from_node(document.selected), *document.gizmo, document.orientation};

@@ -83,9 +83,9 @@ struct Line {
 
 /**
  * Picks and outlines the objects of a render scene, in pictures of any engine and viewport: a picture is given by its
- * view (SceneRenderer::view_of, draw::Viewport::view) and its size. What the first call of each function needs is
- * created by it, and nothing before. A host with several viewports may use one overlay for all; with one for each,
- * lines of pictures that refine at the same time need fewer passes.
+ * view (SceneRenderer::view_of, draw::Viewport::view) and its size. The first call of each function creates the
+ * resources that it needs. A host with several viewports may use one overlay for all; with one for each, lines of
+ * pictures that refine at the same time need fewer passes.
  *
  * Objects are as render_scene::RenderScene::update found them. Each function throws gpu::Error where the scene was
  * edited since. Device's thread, and not while the device is recording.
@@ -123,7 +123,7 @@ class Overlay {
                     const glm::vec4 &color, const draw::Target &target);
 
   /**
-   * Draw \a lines over the content of \a target, in order. What is beyond the near plane or the picture's edge is left
+   * Draw \a lines over the content of \a target, in order. Parts beyond the near plane or the picture's edge are left
    * out. Lines that are not on top are hidden by the scene's objects, as pick() sees them, whatever depth the target
    * has; for them the objects are drawn once more when the view, the size or the scene changes. Target::composition and
    * depth have no effect. \throws gpu::Error as draw::check, and for a line that is not finite or has no width
@@ -155,7 +155,7 @@ class Overlay {
   const gpu::Shader &shader(ShaderId id, Feature features);
   void make(ObjectsTarget &target, glm::ivec2 size_px);
   /**
-   * Append a pass that draws what \a view sees of the objects that \a is_drawn accepts into \a target.
+   * Append a pass that draws the objects that \a view sees and \a is_drawn accepts into \a target.
    * \return whether there is anything
    */
   bool record_objects(const draw::View &view, glm::ivec2 size_px, const IsDrawn &is_drawn, ObjectsTarget &target,
@@ -171,7 +171,7 @@ class Overlay {
   gpu::Buffer view_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
-  /** Chosen objects, of an outline or in an area. */
+  /** The objects of an outline. */
   ObjectsTarget mask_;
   /** All objects, for lines that they hide. */
   ObjectsTarget hiding_;

@@ -93,18 +93,19 @@ std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, 
   const std::vector<std::uint8_t> inside = inside_of(outline_px, region);
   const draw::View region_view = view_of_region(view, size_px, region);
   gpu::Device &device = scene_.device();
+  // Of the region's size, so that nothing else is read back.
+  ObjectsTarget area;
   std::vector<bool> is_found(scene_.objects().index_end());
   bool has_more = true;
   for (bool is_first = true; has_more && (is_first || reach == Reach::Through); is_first = false) {
     has_more = false;
     gpu::CommandList list;
     const auto is_left = [&](draw::ObjectIndex object) { return !is_found[object]; };
-    if (!record_objects(region_view, region.size_px, is_left, mask_, list)) {
+    if (!record_objects(region_view, region.size_px, is_left, area, list)) {
       break;
     }
     device.submit(list);
-    const std::vector<glm::vec2> texels = gpu::cropped(gpu::read_as<glm::vec2>(device, mask_.objects),
-                                                       mask_.objects.desc().width, {glm::ivec2(0), region.size_px});
+    const auto texels = gpu::read_as<glm::vec2>(device, area.objects);
     for (std::size_t i = 0; i < texels.size(); i++) {
       const auto object = draw::ObjectIndex(texels[i].x);
       if (inside[i] != 0 && object != draw::object_identity && !is_found[object]) {
