@@ -524,7 +524,7 @@ TEST(ViewIconsTest, ConesAreLinesAtTheAngleOfTheSpotAndSunsAlongTheirDirection)
     widest = std::max(widest, std::acos(glm::dot(glm::normalize(way), forward)));
   }
   EXPECT_NEAR(widest, 0.4, 1e-6);
-  for (const overlay::Line &line : icon_lines(scene, map, node, all)) {
+  for (const overlay::Line &line : icon_lines(scene, map, {&node, 1}, all)) {
     EXPECT_TRUE(line.is_on_top) << "it is selected";
   }
 
