@@ -15,6 +15,9 @@ layout(std140, binding = WORLD_BLOCK_SLOT) uniform world_block
   WorldBlock world;
 };
 
+/** 1: in a picture of one sample, the surface receives occlusion of the world's light. */
+SPECIALIZATION_CONSTANT(3) const int WORLD_OCCLUSION = HAS_WORLD_OCCLUSION;
+
 /** Parts of the world's light that arrive on surfaces that face the positive and the negative axes. */
 struct WorldParts {
   vec3 positive;
@@ -24,6 +27,9 @@ struct WorldParts {
 /** From the probes above the plane of \a surface; 1 if there are none. */
 WorldParts world_parts(Surface surface)
 {
+  if (WORLD_OCCLUSION == 0) {
+    return WorldParts(vec3(1.0), vec3(1.0));
+  }
   bool has_probes = world.probe_count.x > 0.0;
   vec3 last = max(world.probe_count.xyz - 1.0, 0.0);
   // In cells between probes.
@@ -60,7 +66,7 @@ WorldParts world_parts(Surface surface)
 
 /**
  * Part of the world's light from around the unit vector \a direction that arrives at \a surface. Probes see the surface itself
- * block the light from below its plane, of which it has none: what arrives is divided by what a plane leaves.
+ * block the light from below its plane, of which it has none: the arriving part is divided by the part that a plane leaves.
  */
 float world_arriving(WorldParts parts, Surface surface, vec3 direction)
 {

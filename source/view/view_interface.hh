@@ -50,7 +50,7 @@ class InterfaceRenderer {
     std::size_t first_vertex = 0;
   };
 
-  /** Gathers what ImGui::Render has made, within the rectangles that clip it. */
+  /** Gathers the triangles of ImGui::Render, within the rectangles that clip them. */
   void gather();
   /**
    * Appends the part of \a polygon, a triangle, between two corners of a rectangle, as triangles: the rectangles of

@@ -201,8 +201,7 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
     casters_.push_back({.bounds_ws = scene.object(i).bounds,
                         .object = i,
                         .fingerprint = fingerprint_of(std::as_bytes(std::span(&print, 1)))});
-    instances_.push_back(
-        {tree.get(), glm::inverse(print.world_from_object), scene.objects().is_mirrored(i), print.cover});
+    instances_.push_back({tree.get(), glm::inverse(print.world_from_object), print.cover});
     boxes.push_back(scene.object(i).bounds);
   }
   tree_ = BoxTree(boxes);
@@ -239,7 +238,8 @@ RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_
       if (determinant != 0.0F && u >= -margin && v >= -margin && u + v <= 1.0F + margin && t > 0.0F && t < t_max &&
           is_covered(u, v, instance.cover)) {
         t_max = t;
-        hit = (determinant < 0.0F) == instance.is_mirrored ? RayHit::Front : RayHit::Back;
+        // In the space of the object, so that mirrored objects have their fronts outside, too.
+        hit = determinant > 0.0F ? RayHit::Front : RayHit::Back;
       }
       return hit != RayHit::None && !is_nearest;
     });

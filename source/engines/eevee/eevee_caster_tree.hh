@@ -31,7 +31,7 @@ class BoxTree {
  private:
   struct Node {
     scene::Bounds box;
-    /** Of a leaf: the first of its `count` items. Otherwise the second child; the first child is the next node. */
+    /** The first of a leaf's `count` items. Otherwise the second child; the first child is the next node. */
     std::uint32_t next = 0;
     std::uint32_t count = 0;
   };
@@ -68,7 +68,6 @@ class CasterTree {
   struct Instance {
     const MeshTree *mesh;
     glm::mat4 object_from_world;
-    bool is_mirrored;
     /** Part of the rays that its triangles block. */
     double cover;
   };
@@ -78,7 +77,7 @@ class CasterTree {
 
     auto operator<=>(const MeshKey &) const = default;
   };
-  /** Of a mask. */
+  /** Key of a mask. */
   struct CoverKey {
     std::uint64_t image;
     scene::Revision content;

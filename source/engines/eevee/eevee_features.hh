@@ -57,6 +57,11 @@ enum class Feature : std::uint32_t {
    * of programs with LampShape, and selects no variant: their interfaces are the same.
    */
   LampHighlights = 1U << 19,
+  /**
+   * The surface receives occlusion of the world's light in a picture of one sample. A constant of programs with World,
+   * as LampHighlights is of those with LampShape.
+   */
+  WorldOcclusion = 1U << 20,
 };
 
 GNOMON_MASK_OPERATORS(Feature)
@@ -64,10 +69,13 @@ GNOMON_MASK_OPERATORS(Feature)
 /** At least one lamp has a shadow. */
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
+/** Constants of programs. They select no variant. */
+inline constexpr Feature program_constants = Feature::LampHighlights | Feature::WorldOcclusion;
+
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)
 {
-  return without(features, any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm);
+  return without(features, any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm | Feature::WorldOcclusion);
 }
 
 /** The kernel of percentage-closer filtering. */

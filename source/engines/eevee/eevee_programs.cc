@@ -310,6 +310,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   if (has(features & declaration.features, Feature::LampShape)) {
     desc.defines.push_back(fmt::format("HAS_LAMP_HIGHLIGHTS {}", int(has(features, Feature::LampHighlights))));
   }
+  if (has(features & declaration.features, Feature::World)) {
+    desc.defines.push_back(fmt::format("HAS_WORLD_OCCLUSION {}", int(has(features, Feature::WorldOcclusion))));
+  }
   return desc;
 }
 

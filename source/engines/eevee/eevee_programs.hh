@@ -105,7 +105,7 @@ struct SurfaceFunctionFault {
 
 /**
  * The description of one variant for gpu::Device::create_shader. \a pcf is used only with Feature::ShadowPcf. \a
- * features may contain Feature::LampHighlights.
+ * features may contain program_constants.
  */
 [[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features,
                                           const PcfKernel &pcf = {});

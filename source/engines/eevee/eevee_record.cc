@@ -20,7 +20,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
     data.features = with_variant(
         shared.lights.plan().lamps.features | shared.shadows.features() | specular | asked_features(settings_) |
         (materials.alpha_min < shared.lights.plan().lamps.highlight_alpha ? Feature::LampShape | Feature::LampHighlights
-                                                                          : Feature::None));
+                                                                          : Feature::None) |
+        (has_world_occlusion(settings_, scene_) ? Feature::WorldOcclusion : Feature::None));
   }
   // The inputs of the programs of some materials, beyond those of the frame. They are the same for all viewports, as
   // they share the blocks.

@@ -85,8 +85,9 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature variant = variant_of(declaration, features);
-  const Feature constant = has(variant, Feature::LampShape) ? features & Feature::LampHighlights : Feature::None;
-  const Key key(id, variant | constant, function.key);
+  const Feature constants = (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
+                            (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None);
+  const Key key(id, variant | (features & constants), function.key);
   const auto found = shaders_.find(key);
   // The program is empty if the packet that contained its creation was lost.
   if (found != shaders_.end() && found->second->shader) {
@@ -104,7 +105,7 @@ std::shared_ptr<gpu::SharedShader> ShaderCache::make(gpu::Device &device, const 
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   gpu::ShaderDesc desc = shader_desc(declaration, features, pcf_);
   const gpu::ShaderReflection reflection =
-      reflection_ ? reflection_ : generated_reflection(id, without(features, Feature::LampHighlights), function != 0);
+      reflection_ ? reflection_ : generated_reflection(id, without(features, program_constants), function != 0);
   std::string text;
   if (function != 0) {
     desc = with_surface_function(desc, declaration);

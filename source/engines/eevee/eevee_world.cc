@@ -47,6 +47,12 @@ bool has_background(const Settings &settings, const render_scene::RenderScene &s
           (settings.background.kind == Background::Kind::World && scene.scene().world()));
 }
 
+bool has_world_occlusion(const Settings &settings, const render_scene::RenderScene &scene)
+{
+  return settings.planned_sample_count() == 1 && settings.shadow.kind != scene::ShadowKind::None &&
+         settings.light.has(LightPart::Kind::World) && scene.world() && !scene.world()->rest_directions.empty();
+}
+
 SceneWorld::SceneWorld() = default;
 SceneWorld::~SceneWorld() = default;
 
@@ -63,7 +69,7 @@ void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature fe
     return;
   }
   std::optional<ProbeKey> probe_key;
-  if (key_.sample_count == 1 && settings.shadow.kind != scene::ShadowKind::None) {
+  if (has_world_occlusion(settings, scene)) {
     probe_key = {scene.world_revision(), scene.objects().revision(), scene.passes_revision()};
   }
   if (!probe_key) {

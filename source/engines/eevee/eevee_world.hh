@@ -31,6 +31,8 @@ inline constexpr double world_lobe_directions = 12.0;
 
 /** Whether pixels without a surface show a background. */
 [[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
+/** Whether pictures have one sample, in which probes hold the occlusion of the world's light. */
+[[nodiscard]] bool has_world_occlusion(const Settings &settings, const render_scene::RenderScene &scene);
 
 /** The scene's world on the device. Internal to the engine. */
 class SceneWorld {
@@ -72,7 +74,7 @@ class SceneWorld {
 
   /** Inputs from which the probes of `block_` were made. */
   struct ProbeKey {
-    /** RenderScene::world_revision, and the revisions of what its casters depend on. */
+    /** Revisions of the world and of the inputs of its casters. */
     std::uint64_t world = 0;
     std::uint64_t objects = 0;
     std::uint64_t passes = 0;

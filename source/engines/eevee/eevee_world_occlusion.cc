@@ -90,6 +90,15 @@ void WorldOcclusion::place(const scene::Bounds &bounds_ws)
 
 void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
 {
+  // A ray is tested against each of a few bounds, or against those of all.
+  constexpr std::size_t bounds_max = 16;
+  scene::Bounds all;
+  if (changed.size() > bounds_max) {
+    for (const scene::Bounds &box : changed) {
+      all.extend(box);
+    }
+    changed = std::span(&all, 1);
+  }
   std::atomic<std::uint64_t> traced = 0;
   scene::parallel_for(std::size_t(probe_count()), 0, [&](std::size_t probe) {
     const glm::vec3 position_ws = first_ws_ + glm::vec3(place_of(probe)) * step_;
@@ -108,9 +117,13 @@ void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
 
 void WorldOcclusion::add_up(const render_scene::WorldLight &world)
 {
-  whole_positive_ = whole_negative_ = glm::vec3(0.0F);
   probes_.assign(std::size_t(probe_count()), {});
-  for (std::size_t probe = 0; probe < probes_.size(); probe++) {
+  struct Whole {
+    glm::vec3 positive{0.0F};
+    glm::vec3 negative{0.0F};
+  };
+  std::vector<Whole> wholes(probes_.size());
+  scene::parallel_for(probes_.size(), 0, [&](std::size_t probe) {
     const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
     const auto backs = std::ranges::count(hits.first(body_rays), RayHit::Back);
     const auto fronts = std::ranges::count(hits.first(body_rays), RayHit::Front);
@@ -119,24 +132,26 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
     probes_[probe].weight = is_inside ? 1e-2F : 1.0F;
     glm::vec3 positive(0.0F);
     glm::vec3 negative(0.0F);
-    glm::vec3 all_positive(0.0F);
-    glm::vec3 all_negative(0.0F);
+    Whole &whole = wholes[probe];
     for (int ray = 0; ray < probe_rays; ray++) {
       const glm::vec3 direction = ray_direction(probe, ray);
       const float light = luminance(world, direction);
       const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
       const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
       const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
-      all_positive += light * along;
-      all_negative += light * against;
+      whole.positive += light * along;
+      whole.negative += light * against;
       positive += part * along;
       negative += part * against;
     }
     // Quotients of sums over the same rays: where nothing blocks any, they are exactly 1.
-    probes_[probe].positive = quotient_or_one(positive, all_positive);
-    probes_[probe].negative = quotient_or_one(negative, all_negative);
-    whole_positive_ += all_positive;
-    whole_negative_ += all_negative;
+    probes_[probe].positive = quotient_or_one(positive, whole.positive);
+    probes_[probe].negative = quotient_or_one(negative, whole.negative);
+  });
+  whole_positive_ = whole_negative_ = glm::vec3(0.0F);
+  for (const Whole &whole : wholes) {
+    whole_positive_ += whole.positive;
+    whole_negative_ += whole.negative;
   }
 }
 
@@ -144,7 +159,7 @@ void WorldOcclusion::update(const render_scene::RenderScene &scene)
 {
   const std::vector<scene::Bounds> changed = casters_.update(scene);
   const scene::Bounds bounds_ws = scene.bounds();
-  if (casters_.empty() || scene.world()->rest_directions.empty()) {
+  if (casters_.empty()) {
     count_ = glm::ivec3(0);
     return;
   }
@@ -161,6 +176,9 @@ void WorldOcclusion::update(const render_scene::RenderScene &scene)
 
 void WorldOcclusion::write(shared::WorldBlock &block) const
 {
+  if (probe_count() == 0) {
+    return;
+  }
   block.probe_count = glm::vec4(count_, 0.0F);
   block.probe_scale = glm::vec4(1.0F / step_, 0.0F);
   block.probe_offset = glm::vec4(-first_ws_ / step_, 0.0F);

@@ -7,7 +7,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Of a pool. */
+/** Sets in a pool. */
 constexpr std::uint32_t set_count_max = 128;
 
 }  // namespace

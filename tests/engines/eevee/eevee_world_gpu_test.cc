@@ -246,9 +246,15 @@ TEST_F(WorldGpuTest, OneFrameWithoutOcclusionIsThatWithoutShadows)
   test::add_object(scene, box, glm::translate(glm::dmat4(1.0), {1, 2, 1}));
   const std::vector<glm::vec4> without = drawn(scene::ShadowKind::None);
   EXPECT_NE(drawn(scene::ShadowKind::Hard), without);
-  for (const scene::Object &object : scene.objects()) {
-    scene.edit(object.node, [](scene::Node &value) { value.casts_shadow = false; });
-  }
+  const auto edit_all = [&](const auto &change) {
+    for (const scene::Object &object : scene.objects()) {
+      scene.edit(object.node, change);
+    }
+  };
+  edit_all([](scene::Node &value) { value.receives_shadow = false; });
+  EXPECT_EQ(drawn(scene::ShadowKind::Hard), without);
+  edit_all([](scene::Node &value) { value.receives_shadow = true; });
+  edit_all([](scene::Node &value) { value.casts_shadow = false; });
   EXPECT_EQ(drawn(scene::ShadowKind::Hard), without);
 }
 

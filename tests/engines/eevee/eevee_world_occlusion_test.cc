@@ -122,6 +122,24 @@ TEST_F(WorldOcclusionTest, AClosedRoomHasNone)
   EXPECT_GT(count, 100);
 }
 
+TEST_F(WorldOcclusionTest, InMirroredWallsIsThatInTheSameWalls)
+{
+  add_room();
+  WorldOcclusion plain;
+  const shared::WorldBlock expected = traced(plain);
+  for (const scene::Object &object : scene.objects()) {
+    scene.edit(object.node, [](scene::Node &node) {
+      node.parent_from_node = node.parent_from_node * glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1));
+    });
+  }
+  WorldOcclusion mirrored;
+  const shared::WorldBlock block = traced(mirrored);
+  ASSERT_EQ(mirrored.probe_count(), plain.probe_count());
+  for (int i = 0; i < 2 * plain.probe_count(); i++) {
+    EXPECT_EQ(block.probes[i], expected.probes[i]) << i;
+  }
+}
+
 TEST_F(WorldOcclusionTest, OfEditsIsThatOfANewScene)
 {
   add_room();
@@ -139,11 +157,25 @@ TEST_F(WorldOcclusionTest, OfEditsIsThatOfANewScene)
       EXPECT_EQ(block.probes[i], expected.probes[i]) << i;
     }
     EXPECT_EQ(block.whole_positive, expected.whole_positive);
+    EXPECT_EQ(block.whole_negative, expected.whole_negative);
   };
   scene.set_transform(small, placed({-1.0, -0.5, 2.0}, {-0.5, 0.0, 2.5}));
   expect_as_new(0.1);
   scene.set_world(scene::World{.color = {0.5F, 1.0F, 2.0F}});
   expect_as_new(0.0);
+  scene.edit(small, [](scene::Node &node) { node.casts_shadow = false; });
+  expect_as_new(0.1);
+  scene.edit(small, [](scene::Node &node) { node.casts_shadow = true; });
+  expect_as_new(0.1);
+  // More changes than bounds are looked at one by one, and with them those of the scene.
+  for (int i = 0; i < 20; i++) {
+    add_box({0.1 * i, 1.0, 1.0 + 0.1 * i}, {0.1 * i + 0.05, 1.1, 1.05 + 0.1 * i});
+  }
+  expect_as_new(1.0);
+  scene.remove(small);
+  expect_as_new(0.1);
+  add_box({0.0, 0.0, 4.0}, {1.0, 1.0, 6.0});
+  expect_as_new(1.0);
 }
 
 TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheMaskLeaves)
