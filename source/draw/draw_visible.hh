@@ -22,7 +22,7 @@ class VisibleObjects {
   void update(const View &view, const ObjectBuffer &objects);
 
   /**
-   * As View::touches with the volume of the object, unless it is in View::hidden. True for indices that did not exist
+   * Whether View::touches the volume of the object, and View::hidden lacks it. True for indices that did not exist
    * at the last update.
    */
   [[nodiscard]] bool contains(ObjectIndex object) const

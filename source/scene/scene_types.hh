@@ -86,7 +86,7 @@ enum class ImageUse {
   Mask,
 };
 
-/** What a mask covers. */
+/** The cover of a mask. */
 struct MaskCover {
   /** Least alpha of what is covered. 0: no mask. */
   float cutoff = 0.0F;

@@ -26,7 +26,7 @@ struct Command {
   Need need;
   /** \throws std::exception with the reason if the command fails */
   void (*run)(App &app, Words words);
-  /** It first waits as for Need::Pictures, so that it shows what the commands before it asked for. */
+  /** It first waits as for Need::Pictures, so that it shows the effects of the commands before it. */
   bool is_after_pictures = false;
 };
 

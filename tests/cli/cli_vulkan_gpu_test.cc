@@ -48,7 +48,7 @@ TEST_F(CliVulkanTest, ThePictureIsThatOfOpenGl)
   ASSERT_FALSE(difference.error);
   // Mesa compiles GLSL and SPIR-V in two ways, so that the last digits differ.
   EXPECT_LE(difference.rms_error, 1e-5);
-  // What a program is drawn with seldom differs, so that few pipelines are made.
+  // The states with which a program is drawn seldom differ, so that few pipelines are made.
   std::map<std::string, int> pipelines;
   const nlohmann::json trace = nlohmann::json::parse(read("vulkan.trace"));
   for (const nlohmann::json &span : trace["traceEvents"]) {

@@ -42,8 +42,8 @@ struct Hit {
   /** World space of the scene, metres. On the triangle, if there is one; otherwise from the depth of the pixel. */
   glm::dvec3 position_ws{0.0};
   /**
-   * Of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host, and where rounding leaves
-   * no triangle at the drawn depth.
+   * The triangle of the mesh in its present pose. Empty for points, lines and meshes in buffers of a host, and where
+   * rounding leaves no triangle at the drawn depth.
    */
   std::optional<TrianglePoint> triangle{};
 };

@@ -93,7 +93,7 @@ std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, 
   const std::vector<std::uint8_t> inside = inside_of(outline_px, region);
   const draw::View region_view = view_of_region(view, size_px, region);
   gpu::Device &device = scene_.device();
-  // Of the region's size, so that nothing else is read back.
+  // The target has the region's size, so that nothing else is read back.
   ObjectsTarget area;
   std::vector<bool> is_found(scene_.objects().index_end());
   bool has_more = true;

@@ -15,7 +15,7 @@ static std::string label_of(const Model &model, int node)
 namespace {
 
 struct Trees {
-  /** Of each node; -1: it is a root. */
+  /** The parent of each node; -1: it is a root. */
   std::vector<int> parent;
   /** All nodes, each after its parent. */
   std::vector<int> order;

@@ -216,7 +216,7 @@ TEST_F(WorldGpuTest, OneFrameOfAClosedRoomIsBlack)
     }
     return largest;
   };
-  // The shader adds a weight of 1e-6 for what no probe knows, and squares.
+  // The shader adds a weight of 1e-6 for light of which no probe knows, and squares.
   EXPECT_LT(brightest(), 1e-9F);
   const glm::dmat4 closed = scene.nodes()[top].parent_from_node;
   scene.set_transform(top, glm::translate(glm::dmat4(1.0), glm::dvec3(20, 0, 0)) * closed);

@@ -50,6 +50,17 @@ class OverlayGpuTest : public test::GpuDeviceTest {
     const glm::dmat4 place = glm::translate(glm::dmat4(1), {0, 0, z});
     return test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(place, glm::dvec3(half_size)));
   }
+  /** A material of which the right half is drawn. */
+  scene::Handle<scene::Material> add_mask()
+  {
+    const auto masked = test::add_material(scene, glm::vec3(0.5F));
+    const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
+    scene.edit(masked, [&](scene::Material &material) {
+      material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
+      material.alpha_mode = scene::AlphaMode::Mask;
+    });
+    return masked;
+  }
   /** Colours of a target of 80x60 pixels, with the picture at 10, 15, after \a draw over transparent black. */
   template <typename Draw>
   test::Picture drawn(Draw &&draw)
@@ -329,12 +340,7 @@ TEST_F(OverlayGpuTest, APickedTriangleOfASphereHasTheAnglesOfItsPointAndItsNorma
 
 TEST_F(OverlayGpuTest, APickedTriangleIsTheOneBehindAHoleOfTheSameMeshAndPointsHaveNone)
 {
-  const auto masked = test::add_material(scene, glm::vec3(0.5F));
-  const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
-  scene.edit(masked, [&](scene::Material &material) {
-    material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
-    material.alpha_mode = scene::AlphaMode::Mask;
-  });
+  const auto masked = add_mask();
   const auto two_squares = test::add_square_mesh(scene, masked);
   scene::Mesh mesh = scene.meshes()[two_squares];
   for (std::size_t i = 0; i < 4; i++) {
@@ -368,12 +374,7 @@ TEST_F(OverlayGpuTest, WhatAMaskCutsOutAndHiddenNodesLetThePixelThrough)
 {
   const auto plain = test::add_material(scene, glm::vec3(0.5F));
   const auto back = add_square(-1, plain);
-  const auto masked = test::add_material(scene, glm::vec3(0.5F));
-  const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
-  scene.edit(masked, [&](scene::Material &material) {
-    material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
-    material.alpha_mode = scene::AlphaMode::Mask;
-  });
+  const auto masked = add_mask();
   const auto front = add_square(0, masked);
   EXPECT_EQ(pick(size_px.x / 2 - 3, size_px.y / 2)->node, back);
   EXPECT_EQ(pick(size_px.x / 2 + 3, size_px.y / 2)->node, front);
@@ -488,12 +489,7 @@ TEST_F(OverlayGpuTest, AnAreaSelectsWhatRaysThroughItsPixelsMeetFirstOrAtAll)
 
 TEST_F(OverlayGpuTest, AnAreaWithinAHoleOfAMaskOrWithoutAPixelSelectsNothingOfIt)
 {
-  const auto masked = test::add_material(scene, glm::vec3(0.5F));
-  const std::vector<std::uint8_t> hole_on_the_left = {255, 255, 255, 0, 255, 255, 255, 255};
-  scene.edit(masked, [&](scene::Material &material) {
-    material.base_color_texture = {test::add_texture(scene, 2, hole_on_the_left)};
-    material.alpha_mode = scene::AlphaMode::Mask;
-  });
+  const auto masked = add_mask();
   const auto front = add_square(0, masked);
   const auto back = add_square(-1, test::add_material(scene, glm::vec3(0.5F)));
   render_scene->update();

@@ -48,7 +48,7 @@ class HiddenNodesTest : public test::GpuDeviceTest {
     renderer.draw(camera);
     return {size_px, renderer.read_picture()};
   }
-  /** Of any node: a viewport shows the shadows of what it hides. */
+  /** For all nodes: a viewport shows the shadows of nodes that it hides. */
   void cast_no_shadows()
   {
     for (const auto node : {floor, box, child, glass}) {
@@ -122,7 +122,7 @@ TEST_F(HiddenNodesTest, HiddenNodesCastTheirShadowsAndTheSceneIsAsItWas)
 
 TEST_F(HiddenNodesTest, AChangeOfTheHiddenNodesStartsThePictureAgainAlsoWithinATimeBudget)
 {
-  // Cascades that are fitted to what is seen depend on the nodes.
+  // Cascades that are fitted to the seen surfaces depend on the nodes.
   settings.shadow.is_fitted_to_depth = true;
   test::add_lamp(scene, scene::LampKind::Sun, {0, 4, 0}, {0.3F, -1, -0.2F}, 2.0F);
   eevee::SceneRenderer renderer(*device, scene, size_px, settings);
@@ -173,7 +173,7 @@ TEST_F(HiddenNodesTest, TwoViewportsOfOneEngineHideOtherNodes)
     EXPECT_EQ(drawn(all, view), whole) << engine->name();
     EXPECT_EQ(drawn(some, less), hidden) << engine->name();
     EXPECT_EQ(drawn(some, view), whole) << engine->name();
-    // What is hidden shows what is behind: the overlay finds another node there.
+    // The overlay finds the node behind a hidden one.
     Overlay overlay(shared);
     int seen_box = 0;
     int seen_floor = 0;
