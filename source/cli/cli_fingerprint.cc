@@ -177,7 +177,7 @@ void add(Hasher &hash, const scene::Animation &animation)
     hash.add(value.slot);
     hash.add(value.factor);
     add(hash, value.track);
-    add(hash, value.strength_track);
+    add(hash, value.second_track);
   }
 }
 

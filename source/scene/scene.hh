@@ -48,6 +48,9 @@ struct PlacedLamp : Lamp {
  */
 [[nodiscard]] glm::dvec2 spot_scale(const PlacedLamp &lamp);
 
+/** Lamp::spot_blend of a cone that begins to fade at the half angle \a inner, which is at most \a outer; radians. */
+[[nodiscard]] double spot_blend(double inner, double outer);
+
 /** A camera at a node. The base class has the values of the camera. */
 struct PlacedCamera : Camera {
   Handle<Node> node{};

@@ -120,7 +120,7 @@ double Animation::duration() const
   }
   for (const AnimatedValue &value : values) {
     extend(value.track);
-    extend(value.strength_track);
+    extend(value.second_track);
   }
   return seconds;
 }
@@ -135,7 +135,7 @@ bool has_same_place(const AnimatedValue &a, const AnimatedValue &b)
 /** Whether one of them is a factor of three numbers, and the other the strength that it is multiplied by. */
 bool is_product(const AnimatedValue &a, const AnimatedValue &b)
 {
-  return a.property == "emissive" && has_same_place(a, b) && !a.strength_track && !b.strength_track &&
+  return a.property == "emissive" && has_same_place(a, b) && !a.second_track && !b.second_track &&
          a.track->width != b.track->width;
 }
 
@@ -146,7 +146,7 @@ void add_value(Animation &animation, AnimatedValue value)
   for (AnimatedValue &other : animation.values) {
     if (is_product(other, value)) {
       const bool is_strength = value.track->width == 1;
-      other.strength_track = is_strength ? value.track : other.track;
+      other.second_track = is_strength ? value.track : other.track;
       other.track = is_strength ? other.track : value.track;
       other.factor = glm::dvec3(1.0);
       return;
@@ -271,11 +271,12 @@ void pose(Scene &scene, const Animation &animation, double seconds)
       value = glm::dvec4(value.x);
     }
     value = glm::dvec4(animated.factor * glm::dvec3(value), value.w);
-    if (animated.strength_track) {
-      double strength = 1.0;
-      animated.strength_track->evaluate(seconds, {&strength, 1});
-      value *= strength;
+    double second = 1.0;
+    if (animated.second_track) {
+      animated.second_track->evaluate(seconds, {&second, 1});
     }
+    const bool is_cone = animated.property == cone_property;
+    value *= is_cone ? 1.0 : second;
     std::visit(
         [&]<typename T>(Handle<T> handle) {
           if (scene.pool<T>().is_live(handle)) {
@@ -289,6 +290,11 @@ void pose(Scene &scene, const Animation &animation, double seconds)
                 }
               }
               set_property(thing, animated.property, value);
+              if constexpr (std::is_same_v<T, Lamp>) {
+                const double outer = thing.spot_outer_angle;
+                thing.spot_blend =
+                    is_cone ? float(spot_blend(std::clamp(second, 0.0, outer), outer)) : thing.spot_blend;
+              }
             });
           }
         },

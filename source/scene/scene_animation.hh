@@ -82,8 +82,11 @@ struct AnimatedValue {
   /** Factors of the first three numbers of the track, for the conversion of units. */
   glm::dvec3 factor{1.0};
   SharedTrack track;
-  /** Emission only: one number, by which the three of `track` are multiplied. nullptr: 1. */
-  SharedTrack strength_track{};
+  /**
+   * Emission: one number, by which the three of `track` are multiplied; nullptr: 1. A spot's cone: the angle at which
+   * the light begins to fade, radians, which `track` is a limit of; not nullptr.
+   */
+  SharedTrack second_track{};
 };
 
 struct Animation {
@@ -152,6 +155,9 @@ struct DeformedMesh {
   std::vector<glm::dmat4> deformed_by_joints;
   std::vector<double> deformed_by_weights;
 };
+
+/** Name of the row of a spot's cone, whose pose also sets Lamp::spot_blend. */
+inline constexpr std::string_view cone_property = "spot_outer_angle";
 
 /** Adds \a value. A factor of emission and its strength become one value. */
 void add_value(Animation &animation, AnimatedValue value);

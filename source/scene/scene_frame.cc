@@ -121,4 +121,12 @@ glm::dvec2 spot_scale(const PlacedLamp &lamp)
   return {ratio(lamp.scale.x), ratio(lamp.scale.y)};
 }
 
+double spot_blend(double inner, double outer)
+{
+  // (cos inner - cos outer) / (1 - cos outer), from half angles without cancellation in narrow cones.
+  const double scale = std::sin(0.5 * outer);
+  const double blend = std::sin(0.5 * (outer + inner)) / scale * (std::sin(0.5 * (outer - inner)) / scale);
+  return std::clamp(blend, 0.0, 1.0);
+}
+
 }  // namespace gnomon::scene

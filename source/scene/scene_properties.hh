@@ -160,6 +160,7 @@ constexpr void Lamp::for_each_property(Visit &&visit)
                                            .max = std::numbers::pi / 2,
                                            .kinds = bits(Spot),
                                            .path = "spot/outerConeAngle",
+                                           .is_animated = true,
                                            .aspect = unsigned(Aspect::Shape),
                                            .sentence = "Half the opening angle of the cone."}));
   visit(property(&Lamp::spot_blend,
@@ -385,6 +386,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                                    .first = 1.5,
                                    .kinds = bits(Perspective),
                                    .path = "perspective/aspectRatio",
+                                   .is_animated = true,
                                    .aspect = lens,
                                    .sentence = "Width / height of the frame. 0: that of the picture."}));
   visit(property(&Camera::half_width,
@@ -721,12 +723,14 @@ constexpr void Material::for_each_property(Visit &&visit)
                   .label = "Specular",
                   .max = 1,
                   .path = "extensions/KHR_materials_specular/specularFactor",
+                  .is_animated = true,
                   .aspect = unsigned(Surface),
                   .sentence = "Factor of dielectric reflection at normal incidence, 0.04. 0: a Lambertian surface."}));
   visit(property(&Material::specular_color,
                  {.name = "specular_color",
                   .label = "Specular color",
                   .path = "extensions/KHR_materials_specular/specularColorFactor",
+                  .is_animated = true,
                   .aspect = unsigned(Surface),
                   .sentence = "Tint of dielectric reflection; the product with 0.04 is clamped to 1."}));
   visit(property(&Material::coat, {.name = "coat",
@@ -734,6 +738,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                    .group = coat_group,
                                    .max = 1,
                                    .path = "extensions/KHR_materials_clearcoat/clearcoatFactor",
+                                   .is_animated = true,
                                    .aspect = unsigned(Surface),
                                    .sentence = "Part of the surface under a clear coat of index 1.5. 0: no coat."}));
   visit(property(&Material::coat_roughness, {.name = "coat_roughness",
@@ -741,6 +746,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                              .group = coat_group,
                                              .max = 1,
                                              .path = "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
+                                             .is_animated = true,
                                              .aspect = unsigned(Surface),
                                              .sentence = "Perceptual."}));
   visit(
@@ -750,6 +756,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                               .min = -texel_limit,
                                               .max = texel_limit,
                                               .path = "extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale",
+                                              .is_animated = true,
                                               .aspect = unsigned(Surface),
                                               .sentence = "Factor of the coat's normal texture."}));
   visit(property(&Material::sheen_color,
@@ -758,6 +765,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                   .group = sheen_group,
                   .max = 1,
                   .path = "extensions/KHR_materials_sheen/sheenColorFactor",
+                  .is_animated = true,
                   .aspect = unsigned(Surface),
                   .sentence = "Reflectance of fibres on the base, under the coat. Black: no sheen."}));
   visit(property(&Material::sheen_roughness, {.name = "sheen_roughness",
@@ -765,6 +773,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                               .group = sheen_group,
                                               .max = 1,
                                               .path = "extensions/KHR_materials_sheen/sheenRoughnessFactor",
+                                              .is_animated = true,
                                               .aspect = unsigned(Surface),
                                               .sentence = "Perceptual."}));
   visit(property(&Material::anisotropy, {.name = "anisotropy",
@@ -772,6 +781,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                          .group = anisotropy_group,
                                          .max = 1,
                                          .path = "extensions/KHR_materials_anisotropy/anisotropyStrength",
+                                         .is_animated = true,
                                          .aspect = unsigned(Surface),
                                          .sentence = "How much rougher the base is along one direction: alpha there is "
                                                      "mix(alpha, 1, anisotropy²). Meshes need tangents."}));
@@ -783,6 +793,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                   .min = -texel_limit,
                   .max = texel_limit,
                   .path = "extensions/KHR_materials_anisotropy/anisotropyRotation",
+                  .is_animated = true,
                   .aspect = unsigned(Surface),
                   .sentence = "Angle of that direction from the tangent, counter-clockwise on the upright image."}));
   visit(property(
@@ -792,6 +803,7 @@ constexpr void Material::for_each_property(Visit &&visit)
        .group = transmission_group,
        .max = 1,
        .path = "extensions/KHR_materials_transmission/transmissionFactor",
+       .is_animated = true,
        .aspect = unsigned(Surface),
        .sentence =
            "Part of the light that enters the base and passes it. 0: opaque. The other values of glass need it."}));
@@ -802,6 +814,7 @@ constexpr void Material::for_each_property(Visit &&visit)
        .group = transmission_group,
        .unit = "m",
        .path = "extensions/KHR_materials_volume/thicknessFactor",
+       .is_animated = true,
        .aspect = unsigned(Surface),
        .sentence = "Length of the light's way inside of the object, object space. 0: a thin wall, no refraction."}));
   visit(
@@ -822,6 +835,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                 .zero = "no absorption",
                 .first = 1,
                 .path = "extensions/KHR_materials_volume/attenuationDistance",
+                .is_animated = true,
                 .aspect = unsigned(Surface),
                 .sentence = "Distance after which attenuation_color is left of white light. 0: nothing is absorbed."}));
   visit(property(&Material::attenuation_color, {.name = "attenuation_color",
@@ -829,6 +843,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                                 .group = transmission_group,
                                                 .max = 1,
                                                 .path = "extensions/KHR_materials_volume/attenuationColor",
+                                                .is_animated = true,
                                                 .aspect = unsigned(Surface),
                                                 .sentence = "Linear red, green and blue."}));
   visit(property(&Material::emissive, {.name = "emissive",

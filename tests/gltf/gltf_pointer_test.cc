@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pointers of KHR_animation_pointer to visibility, transforms of textures, and both factors of emission.
+// Pointers of KHR_animation_pointer to visibility, transforms of textures, factors of materials, and cones of lamps.
 #include "gltf/gltf_animated.hh"
+#include "gltf/gltf_textured_triangle.hh"
 #include "gltf_export.hh"
 
 namespace gnomon::test {
@@ -69,6 +70,129 @@ TEST(GltfPointer, TransformsOfTexturesArePlayed)
       EXPECT_EQ(posed.scale, glm::vec2(2.0F, 3.0F)) << path;
     }
   }
+}
+
+/** A triangle with texture coordinates, whose one material has a texture in each slot of the layers. All factors are 0.
+ */
+GltfBuilder layered_triangle()
+{
+  GltfBuilder builder = triangle_scene();
+  builder.document["images"] = {{{"uri", data_uri(four_texel_png())}}};
+  builder.document["textures"] = {{{"source", 0}}};
+  builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+  builder.document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      builder.accessor<float>({0, 0, 1, 0, 0, 1}, Float32, "VEC2");
+  const json texture = {{"index", 0}};
+  builder.document["materials"] = {
+      {{"name", "paint"},
+       {"extensions",
+        {{"KHR_materials_clearcoat",
+          {{"clearcoatFactor", 0}, {"clearcoatTexture", texture}, {"clearcoatNormalTexture", texture}}},
+         {"KHR_materials_sheen", {{"sheenColorFactor", {0, 0, 0}}, {"sheenColorTexture", texture}}},
+         {"KHR_materials_anisotropy", {{"anisotropyStrength", 0}, {"anisotropyTexture", texture}}},
+         {"KHR_materials_specular", {{"specularFactor", 1}}},
+         {"KHR_materials_ior", {{"ior", 2}}},
+         {"KHR_materials_transmission", {{"transmissionFactor", 0}, {"transmissionTexture", texture}}},
+         {"KHR_materials_volume", {{"thicknessFactor", 0}, {"thicknessTexture", texture}}}}}}};
+  return builder;
+}
+
+TEST(GltfPointer, AllFactorsOfMaterialsArePlayed)
+{
+  // Of an index of 2: (1 / 3)² / 0.04.
+  constexpr float ratio = 25.0F / 9.0F;
+  int played = 0;
+  scene::Material::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    constexpr bool is_number = std::is_same_v<Value, float>;
+    if constexpr (is_number || std::is_same_v<Value, glm::vec3>) {
+      // The index of refraction also changes the reflection; four numbers and a product have tests of their own.
+      if (row.path.empty() || row.name == "ior" || row.name == "base_color" || row.name == "emissive") {
+        return;
+      }
+      GltfBuilder builder = layered_triangle();
+      add_channel(builder, pointer_to("/materials/0/" + std::string(row.path)), {0, 1},
+                  is_number ? std::vector<float>{0, 0.5F} : std::vector<float>{0, 0, 0, 0.5F, 0.25F, 1},
+                  is_number ? "SCALAR" : "VEC3");
+      for (Scene &scene : scenes_of(builder)) {
+        pose_first(scene, 1.0);
+        const Value &posed = nth(scene.materials(), 0).*row.member;
+        if constexpr (is_number) {
+          EXPECT_EQ(posed, 0.5F) << row.name;
+        }
+        else {
+          const float factor = row.name == "specular_color" ? ratio : 1.0F;
+          EXPECT_LT(glm::length(posed - factor * glm::vec3(0.5F, 0.25F, 1)), 1e-6F) << row.name;
+        }
+      }
+      played++;
+    }
+  });
+  EXPECT_GE(played, 18);
+}
+
+TEST(GltfPointer, TexturesAndTangentsOfFactorsThatBeginAtZeroAreKept)
+{
+  const auto posed = [](const std::string &path, bool is_color) {
+    GltfBuilder builder = layered_triangle();
+    add_channel(builder, pointer_to("/materials/0/extensions/" + path), {0, 1},
+                is_color ? std::vector<float>{0, 0, 0, 1, 1, 1} : std::vector<float>{0, 1},
+                is_color ? "VEC3" : "SCALAR");
+    return scenes_of(builder);
+  };
+  const auto has_slots = [](const Scene &scene, auto... slots) {
+    const scene::Material &material = nth(scene.materials(), 0);
+    return (bool(material.*slots) && ...);
+  };
+  for (const Scene &scene : posed("KHR_materials_clearcoat/clearcoatFactor", false)) {
+    EXPECT_TRUE(has_slots(scene, &scene::Material::coat_texture, &scene::Material::coat_normal_texture));
+    EXPECT_FALSE(has_slots(scene, &scene::Material::sheen_color_texture));
+  }
+  for (const Scene &scene : posed("KHR_materials_sheen/sheenColorFactor", true)) {
+    EXPECT_TRUE(has_slots(scene, &scene::Material::sheen_color_texture));
+  }
+  for (const Scene &scene : posed("KHR_materials_transmission/transmissionFactor", false)) {
+    EXPECT_TRUE(has_slots(scene, &scene::Material::transmission_texture));
+  }
+  for (const Scene &scene : posed("KHR_materials_anisotropy/anisotropyStrength", false)) {
+    EXPECT_TRUE(has_slots(scene, &scene::Material::anisotropy_texture));
+    EXPECT_TRUE(nth(scene.meshes(), 0).has_tangents());
+  }
+  EXPECT_FALSE(nth(import(layered_triangle()).meshes(), 0).has_tangents());
+}
+
+TEST(GltfPointer, BothAnglesOfConesArePlayed)
+{
+  const std::string spot = "/extensions/KHR_lights_punctual/lights/0/spot/";
+  const auto blend = [](double inner, double outer) {
+    return (std::cos(inner) - std::cos(outer)) / (1.0 - std::cos(outer));
+  };
+  const auto scenes = [&](bool moves_outer, bool moves_inner) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}}};
+    builder.document["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    if (moves_inner) {
+      add_channel(builder, pointer_to(spot + "innerConeAngle"), {0, 1}, {0, 0.5F}, "SCALAR");
+    }
+    if (moves_outer) {
+      add_channel(builder, pointer_to(spot + "outerConeAngle"), {0, 2}, {0.5F, 1.5F}, "SCALAR");
+    }
+    return scenes_of(builder);
+  };
+  const auto expect_cones = [&](std::vector<Scene> posed, double seconds, double inner, double outer) {
+    for (Scene &scene : posed) {
+      pose_first(scene, seconds);
+      const scene::Lamp &lamp = nth(scene.lamps(), 0);
+      EXPECT_NEAR(lamp.spot_outer_angle, outer, 1e-6);
+      EXPECT_NEAR(lamp.spot_blend, blend(inner, outer), 1e-6);
+    }
+  };
+  expect_cones(scenes(true, false), 1.0, 0.25, 1.0);
+  expect_cones(scenes(false, true), 0.8, 0.4, 0.5);
+  expect_cones(scenes(true, true), 1.0, 0.5, 1.0);
+  // The importer takes a larger inner angle for a hard edge.
+  expect_cones(scenes(false, true), 1.0, 0.5, 0.5);
 }
 
 TEST(GltfPointer, WhatIsNotPlayedIsNamed)

@@ -12,8 +12,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -36,33 +36,6 @@ namespace {
  * without data take no space.
  */
 constexpr std::size_t value_count_max = std::size_t(1) << 26U;
-
-/** The parts of a pointer: "/materials/3/alphaCutoff" has the parts "materials", 3 and "alphaCutoff". */
-struct PointerParts {
-  std::string_view collection;
-  int index = -1;
-  std::string_view path;
-};
-
-std::optional<PointerParts> parts_of(std::string_view pointer)
-{
-  if (pointer.starts_with(light_pointer_prefix)) {
-    pointer.remove_prefix(light_pointer_prefix.size());
-  }
-  if (!pointer.starts_with('/')) {
-    return std::nullopt;
-  }
-  pointer.remove_prefix(1);
-  const std::size_t first = pointer.find('/');
-  const std::size_t second = first == pointer.npos ? first : pointer.find('/', first + 1);
-  if (second == pointer.npos) {
-    return std::nullopt;
-  }
-  PointerParts parts{pointer.substr(0, first), -1, pointer.substr(second + 1)};
-  const std::string_view index = pointer.substr(first + 1, second - first - 1);
-  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), parts.index);
-  return error == std::errc() && end == index.data() + index.size() ? std::optional(parts) : std::nullopt;
-}
 
 class AnimationImporter {
  public:
@@ -153,6 +126,10 @@ class AnimationImporter {
       return;
     }
     const std::optional<scene::Description> property = parts ? animated_property(*parts) : std::nullopt;
+    if (property && property->name == scene::cone_property) {
+      import_cone_channel(sampler, *parts, *property, what, animation);
+      return;
+    }
     if (!property) {
       throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
     }
@@ -205,7 +182,8 @@ class AnimationImporter {
   {
     std::optional<scene::Description> property;
     for_each_animated([&](std::string_view collection, const scene::Description &row) {
-      const bool is_it = row.path == parts.path || (row.name == "emissive" && parts.path == strength_path);
+      const bool is_it = row.path == parts.path || (row.name == "emissive" && parts.path == strength_path) ||
+                         (row.name == scene::cone_property && parts.path == inner_cone_path);
       if (collection == parts.collection && is_it) {
         property = row;
       }
@@ -274,6 +252,40 @@ class AnimationImporter {
     }
   }
 
+  /** One value has both angles of a cone. The one that no channel moves is constant. */
+  void import_cone_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
+                           const scene::Description &property, const std::string &what, scene::Animation &animation)
+  {
+    const SharedTrack moved = track(sampler, 1, Model::ElementType::Scalar);
+    const auto found = things_.lamps.find(parts.index);
+    if (found == things_.lamps.end()) {
+      throw Fault("pointer", "its target is not in the scene");
+    }
+    const Model::Light &light = file_.model.lights[std::size_t(parts.index)];
+    const auto constant = [](double angle) {
+      return std::make_shared<Track>(Track{Interpolation::Step, 1, {0.0F}, {float(angle)}});
+    };
+    for (const Handle<scene::Lamp> lamp : found->second) {
+      if (!property.has_kind(unsigned(scene_.lamps()[lamp].kind))) {
+        throw Fault("pointer", "its target has no '" + std::string(parts.path) + "'");
+      }
+      auto value = std::ranges::find_if(animation.values, [&](const AnimatedValue &one) {
+        return one.target == decltype(one.target)(lamp) && one.property == property.name;
+      });
+      if (value == animation.values.end()) {
+        animation.values.push_back({.target = lamp,
+                                    .property = property.name,
+                                    .track = constant(light.outer_cone_angle),
+                                    .second_track = constant(light.inner_cone_angle)});
+        value = std::prev(animation.values.end());
+      }
+      (parts.path == inner_cone_path ? value->second_track : value->track) = moved;
+      if (lamp == found->second.front() && parts.path == property.path) {
+        warn_of_range(*value, parts, property, what, scene_.lamps()[lamp].name);
+      }
+    }
+  }
+
   void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
                             const scene::Description &property, const std::string &what, scene::Animation &animation)
   {
@@ -307,7 +319,9 @@ class AnimationImporter {
         const glm::dvec3 emissive(source.emissive[0], source.emissive[1], source.emissive[2]);
         add(found->second, is_strength                   ? emissive
                            : property.name == "emissive" ? glm::dvec3(source.emissive_strength)
-                                                         : glm::dvec3(1.0));
+                           : property.name == "specular_color" && source.ior
+                               ? glm::dvec3(reflectance_ratio(float(valid_ior(*source.ior))))
+                               : glm::dvec3(1.0));
       }
     }
     else if (parts.collection == "lights") {

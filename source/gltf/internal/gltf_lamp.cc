@@ -121,15 +121,7 @@ class LampReader : private ExtraReader {
     // glTF requires a smaller inner angle. Equal angles are accepted: Blender writes them for a hard edge.
     const double inner = checked("innerConeAngle", light.inner_cone_angle, {0.0, outer + angle_tolerance});
     lamp_.spot_outer_angle = static_cast<float>(std::min(outer, pi / 2));
-    lamp_.spot_blend = static_cast<float>(derived_blend(std::min(inner, outer), outer));
-  }
-
-  /** (cos inner - cos outer) / (1 - cos outer), computed from half angles without cancellation in narrow cones. */
-  static double derived_blend(double inner, double outer)
-  {
-    const double scale = std::sin(0.5 * outer);
-    const double blend = std::sin(0.5 * (outer + inner)) / scale * (std::sin(0.5 * (outer - inner)) / scale);
-    return std::clamp(blend, 0.0, 1.0);
+    lamp_.spot_blend = static_cast<float>(scene::spot_blend(std::min(inner, outer), outer));
   }
 
   /** Warns about misspelt and inapplicable extras, which would have no effect. */

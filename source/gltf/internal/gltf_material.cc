@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_material.hh"
 
+#include "internal/gltf_pointer.hh"
 #include "internal/gltf_units.hh"
 
 #include <glm/common.hpp>
@@ -8,7 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 namespace gnomon::gltf {
 
@@ -35,9 +40,11 @@ static_assert(by_importance.size() == slot_names.size());
 /** Reads one material; every message names it. */
 class MaterialReader {
  public:
-  MaterialReader(const Model::Material &source, std::size_t index, TextureImporter &textures, StandIns &stand_ins,
-                 Warnings &warnings)
+  /** \a moved: paths of the material that animations move. */
+  MaterialReader(const Model::Material &source, std::size_t index, const std::set<std::string_view> &moved,
+                 TextureImporter &textures, StandIns &stand_ins, Warnings &warnings)
       : source_(source),
+        moved_(moved),
         what_(label("material", source.name, index)),
         textures_(textures),
         stand_ins_(stand_ins),
@@ -64,14 +71,22 @@ class MaterialReader {
   {
     return uv_sets_;
   }
+  /** Whether the material is anisotropic at any time. */
+  [[nodiscard]] bool is_ever_anisotropic() const
+  {
+    return moving_.has_anisotropy();
+  }
 
  private:
   const Model::Material &source_;
+  const std::set<std::string_view> &moved_;
   std::string what_;
   TextureImporter &textures_;
   StandIns &stand_ins_;
   Warnings &warnings_;
   Material result_;
+  /** As `result_`, with 0.5 for each factor that moves: a texture that has an effect with it has one at some time. */
+  Material moving_;
   std::vector<int> uv_sets_;
 
   template <std::size_t Count>
@@ -107,21 +122,15 @@ class MaterialReader {
     result_.specular = clamped("specularFactor", source_.specular, 1.0);
     result_.specular_color = clamped("specularColorFactor", vec3(source_.specular_color), large);
     if (source_.ior) {
-      const double ior = *source_.ior == 0.0 ? 0.0 : clamped_ior(*source_.ior);
+      const double ior = valid_ior(*source_.ior);
+      if (ior != *source_.ior) {
+        warnings_.add(what_, "ior is " + text(*source_.ior) + ", clamped to " + text(ior));
+      }
       // As a float, as the exporter has it, so that the quotient of both is exactly 1.
       result_.specular_color *= reflectance_ratio(static_cast<float>(ior));
       // A surface that reflects all light refracts none.
       result_.ior = ior == 0.0 ? result_.ior : static_cast<float>(ior);
     }
-  }
-
-  double clamped_ior(double ior)
-  {
-    const double result = std::clamp(ior, 1.0, large);
-    if (result != ior) {
-      warnings_.add(what_, "ior is " + text(ior) + ", clamped to " + text(result));
-    }
-    return result;
   }
 
   void read_layers()
@@ -153,24 +162,41 @@ class MaterialReader {
     }
   }
 
-  /** Whether the material's factors let the texture have an effect. Other textures are not decoded. */
+  void find_moving()
+  {
+    moving_ = result_;
+    moving_.is_unlit = source_.is_unlit;
+    Material::for_each_property([&](const auto &row) {
+      using Value = typename std::decay_t<decltype(row)>::Value;
+      if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>) {
+        if (row.is_animated && moved_.contains(row.path)) {
+          moving_.*row.member = Value(0.5F);
+        }
+      }
+    });
+    if (moved_.contains(strength_path)) {
+      moving_.emissive = glm::vec3(vec3(source_.emissive));
+    }
+  }
+
+  /** Whether the material's factors let the texture have an effect at some time. Other textures are not decoded. */
   [[nodiscard]] bool is_read(const SlotName &name) const
   {
     const auto is_one_of = [&](auto... slots) { return ((name.target == slots) || ...); };
     if (is_one_of(&Material::coat_texture, &Material::coat_roughness_texture, &Material::coat_normal_texture)) {
-      return result_.coat > 0.0F;
+      return moving_.coat > 0.0F;
     }
     if (is_one_of(&Material::sheen_color_texture, &Material::sheen_roughness_texture)) {
-      return result_.sheen_color != glm::vec3(0.0F);
+      return moving_.sheen_color != glm::vec3(0.0F);
     }
     if (is_one_of(&Material::anisotropy_texture)) {
-      return result_.anisotropy > 0.0F;
+      return moving_.anisotropy > 0.0F;
     }
     if (is_one_of(&Material::transmission_texture)) {
-      return result_.transmission > 0.0F;
+      return moving_.transmission > 0.0F;
     }
     if (is_one_of(&Material::thickness_texture)) {
-      return result_.transmission > 0.0F && result_.thickness > 0.0F;
+      return moving_.transmission > 0.0F && moving_.thickness > 0.0F;
     }
     return true;
   }
@@ -210,6 +236,7 @@ class MaterialReader {
   {
     result_.normal_scale = limited("normalTexture.scale", source_.normal_scale);
     result_.occlusion_strength = clamped("occlusionTexture.strength", source_.occlusion_strength, 1.0);
+    find_moving();
     choose_uv_sets();
     for (const SlotName &name : slot_names) {
       const Model::TextureSlot &slot = source_.*name.source;
@@ -253,16 +280,16 @@ class MaterialReader {
       return true;
     }
     if (name.target == &Material::emissive_texture) {
-      return result_.emissive != glm::vec3(0.0F) && !source_.is_unlit;
+      return moving_.emissive != glm::vec3(0.0F) && !source_.is_unlit;
     }
     if (name.target == &Material::normal_texture) {
-      return result_.normal_scale != 0.0F && !source_.is_unlit;
+      return moving_.normal_scale != 0.0F && !source_.is_unlit;
     }
     if (name.target == &Material::occlusion_texture) {
-      return result_.occlusion_strength > 0.0F && !source_.is_unlit;
+      return moving_.occlusion_strength > 0.0F && !source_.is_unlit;
     }
     if (name.target == &Material::specular_texture || name.target == &Material::specular_color_texture) {
-      return result_.specular > 0.0F && result_.metallic < 1.0F && !source_.is_unlit;
+      return moving_.specular > 0.0F && moving_.metallic < 1.0F && !source_.is_unlit;
     }
     return name.target == &Material::base_color_texture || !source_.is_unlit;
   }
@@ -303,6 +330,14 @@ class MaterialReader {
 MaterialImporter::MaterialImporter(const File &file, const ImportOptions &options, Warnings &warnings, Scene &scene)
     : file_(file), warnings_(warnings), scene_(scene), textures_(file, options, warnings, scene), stand_ins_(scene)
 {
+  for (const Model::Animation &animation : file.model.animations) {
+    for (const Model::AnimationChannel &channel : animation.channels) {
+      const std::optional<PointerParts> parts = parts_of(channel.pointer);
+      if (parts && parts->collection == "materials") {
+        moved_[parts->index].insert(parts->path);
+      }
+    }
+  }
 }
 
 Handle<Material> MaterialImporter::handle_of(int gltf_material)
@@ -314,7 +349,10 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   }
   else if (is_new) {
     const Model::Material &source = file_.model.materials[gltf_material];
-    MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, stand_ins_, warnings_);
+    const auto moved = moved_.find(gltf_material);
+    MaterialReader reader(source, static_cast<std::size_t>(gltf_material),
+                          moved == moved_.end() ? std::set<std::string_view>() : moved->second, textures_, stand_ins_,
+                          warnings_);
     Material material = reader.read();
     if (!source.surface_uri.empty()) {
       material.surface_function =
@@ -325,6 +363,9 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
       factor_roughness_.emplace(place->second, float(1.0 - std::clamp(*source.glossiness, 0.0, 1.0)));
     }
     uv_sets_.emplace(place->second, reader.uv_sets());
+    if (reader.is_ever_anisotropic()) {
+      anisotropic_.insert(place->second);
+    }
   }
   return place->second;
 }

@@ -9,6 +9,8 @@
 #include "scene.hh"
 
 #include <map>
+#include <set>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -39,6 +41,12 @@ class MaterialImporter {
     return uv_sets_.at(material);
   }
 
+  /** Whether meshes of \a material need tangents for its anisotropy, at rest or at some time of an animation. */
+  [[nodiscard]] bool is_ever_anisotropic(scene::Handle<scene::Material> material) const
+  {
+    return scene_.materials()[material].has_anisotropy() || anisotropic_.contains(material);
+  }
+
   [[nodiscard]] const std::map<int, scene::Handle<scene::Material>> &handles() const
   {
     return handle_of_;
@@ -65,6 +73,10 @@ class MaterialImporter {
   std::map<int, scene::Handle<scene::Material>> handle_of_;
   /** By material of the file, and whether there are normals and tangents. */
   std::map<std::tuple<int, bool, bool>, scene::Handle<scene::Material>> handle_for_lines_;
+  /** Paths that animations move, by material of the file. */
+  std::map<int, std::set<std::string_view>> moved_;
+  /** Materials that may become anisotropic. */
+  std::set<scene::Handle<scene::Material>> anisotropic_;
   /** By URI. */
   std::map<std::string, scene::Handle<scene::SurfaceFunction>> surface_functions_;
   /** Roughness without the texture, of materials whose roughness texture contains the factor. */

@@ -30,15 +30,6 @@ std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t 
   return mesh.primitives.size() > 1 ? name + '[' + std::to_string(primitive_index) + ']' : name;
 }
 
-/** The slot whose uvs the tangents follow, which may have no texture; nullptr if the material needs no tangents. */
-const scene::TextureSlot *tangent_slot(const scene::Material &material)
-{
-  return material.normal_texture        ? &material.normal_texture
-         : material.has_anisotropy()    ? &material.anisotropy_texture
-         : material.coat_normal_texture ? &material.coat_normal_texture
-                                        : nullptr;
-}
-
 }  // namespace
 
 MeshImporter::MeshImporter(const File &file, const ImportOptions &options, Progress &progress, Warnings &warnings,
@@ -50,6 +41,15 @@ MeshImporter::MeshImporter(const File &file, const ImportOptions &options, Progr
       element_count_max_(options.element_count_max),
       materials_(file, options, warnings, scene)
 {
+}
+
+const scene::TextureSlot *MeshImporter::tangent_slot(Handle<scene::Material> handle) const
+{
+  const scene::Material &material = scene_.materials()[handle];
+  return material.normal_texture                  ? &material.normal_texture
+         : materials_.is_ever_anisotropic(handle) ? &material.anisotropy_texture
+         : material.coat_normal_texture           ? &material.coat_normal_texture
+                                                  : nullptr;
 }
 
 const std::vector<Handle<Mesh>> &MeshImporter::meshes_of(int gltf_mesh)
@@ -140,7 +140,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
       };
       mesh.uvs = read_uvs(0);
       mesh.second_uvs = read_uvs(1);
-      if (const scene::TextureSlot *slot = tangent_slot(scene_.materials()[mesh.material])) {
+      if (const scene::TextureSlot *slot = tangent_slot(mesh.material)) {
         mesh.tangents = is_surface ? reader.read_tangents() : std::move(mesh.tangents);
         has_uvs_for_tangents =
             mesh.tangents.empty() && mesh.uv_set(slot->uv_set).empty() && primitive.attributes.contains("TEXCOORD_0");
@@ -180,7 +180,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
 
 void MeshImporter::make_missing_tangents(Mesh &mesh, bool drops_uvs, const std::string &what)
 {
-  const scene::TextureSlot *slot = tangent_slot(scene_.materials()[mesh.material]);
+  const scene::TextureSlot *slot = tangent_slot(mesh.material);
   if (slot == nullptr || !mesh.tangents.empty()) {
     return;
   }

@@ -76,6 +76,8 @@ class MeshImporter {
   /** An empty deform: of a mesh that is not deformed. \return a handle that names nothing where it is left out. */
   [[nodiscard]] scene::Handle<scene::Mesh> read_primitive(int gltf_mesh, std::size_t primitive_index,
                                                           std::optional<int> deforming_skin);
+  /** The slot whose uvs the tangents follow, which may have no texture; nullptr if the material needs no tangents. */
+  [[nodiscard]] const scene::TextureSlot *tangent_slot(scene::Handle<scene::Material> handle) const;
   /** \a drops_uvs: no texture reads the uvs, so that they are removed afterwards. */
   void make_missing_tangents(scene::Mesh &mesh, bool drops_uvs, const std::string &what);
   void spend(std::uint64_t element_count);

@@ -3,6 +3,8 @@
 
 #include "scene_properties.hh"
 
+#include <charconv>
+#include <optional>
 #include <string_view>
 
 /** Pointers "/COLLECTION/INDEX/PATH" of KHR_animation_pointer. Internal to source/gltf. */
@@ -19,6 +21,37 @@ inline constexpr std::string_view visibility_path = "extensions/KHR_node_visibil
 
 /** Between the path of a texture slot and a member of its transform. */
 inline constexpr std::string_view transform_path = "/extensions/KHR_texture_transform/";
+
+/** Angle of a spot at which its light begins to fade, radians. The scene has Lamp::spot_blend for it. */
+inline constexpr std::string_view inner_cone_path = "spot/innerConeAngle";
+
+/** The parts of a pointer: "/materials/3/alphaCutoff" has the parts "materials", 3 and "alphaCutoff". */
+struct PointerParts {
+  std::string_view collection;
+  int index = -1;
+  std::string_view path;
+};
+
+/** Absent: \a pointer has another form. */
+[[nodiscard]] inline std::optional<PointerParts> parts_of(std::string_view pointer)
+{
+  if (pointer.starts_with(light_pointer_prefix)) {
+    pointer.remove_prefix(light_pointer_prefix.size());
+  }
+  if (!pointer.starts_with('/')) {
+    return std::nullopt;
+  }
+  pointer.remove_prefix(1);
+  const std::size_t first = pointer.find('/');
+  const std::size_t second = first == pointer.npos ? first : pointer.find('/', first + 1);
+  if (second == pointer.npos) {
+    return std::nullopt;
+  }
+  PointerParts parts{pointer.substr(0, first), -1, pointer.substr(second + 1)};
+  const std::string_view index = pointer.substr(first + 1, second - first - 1);
+  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), parts.index);
+  return error == std::errc() && end == index.data() + index.size() ? std::optional(parts) : std::nullopt;
+}
 
 /** Calls \a visit with the collection and the row of each property that pointers may animate. */
 template <typename Visit>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
@@ -18,6 +20,13 @@ constexpr double coordinate_max = 1e12;
 
 /** Smallest positive length. The square of a smaller one would underflow in float. */
 constexpr double length_min = 1e-12;
+
+/** The index of refraction that is used for \a ior of a file: 0, which stands for infinity, or at least 1. */
+constexpr double valid_ior(double ior)
+{
+  // The limit of factors without one in glTF.
+  return ior == 0.0 ? 0.0 : std::clamp(ior, 1.0, 1e9);
+}
 
 /**
  * Reflectance at normal incidence of an index of refraction over that of 1.5, which is 0.04. The scene multiplies the

@@ -8,6 +8,7 @@
 #include "internal/gltf_units.hh"
 #include "internal/gltf_write_mesh.hh"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
@@ -166,11 +167,11 @@ class AnimationWriter {
                       std::string(value.property));
       return;
     }
-    if (value.strength_track) {
-      const std::string material = "/materials/" + std::to_string(*index) + '/';
-      add_pointer(*value.track, output(value.track->values, 3), material + "emissiveFactor");
-      add_pointer(*value.strength_track, output(value.strength_track->values, 1),
-                  material + std::string(strength_path));
+    if (value.second_track) {
+      const bool is_cone = value.property == scene::cone_property;
+      add_pointer(*value.track, output(value.track->values, value.track->width), pointer_to(value.property, *index));
+      add_pointer(*value.second_track, output(value.second_track->values, 1),
+                  pointer_to(value.property, *index, is_cone ? inner_cone_path : strength_path));
       return;
     }
     // The importer multiplies the numbers in the file by the unit. A strength has one number, and its property three.
@@ -183,14 +184,20 @@ class AnimationWriter {
       const std::size_t place = value.track->width == width ? i : i / width;
       values.push_back(float(source[place] * (component < 3 ? value.factor[int(component)] / unit : 1.0)));
     }
-    std::string path;
+    add_pointer(*value.track, output(values, width), pointer_to(value.property, *index));
+  }
+
+  /** \a path: of the thing that has \a property; empty: that of the property. */
+  static std::string pointer_to(std::string_view property, int index, std::string_view path = {})
+  {
+    std::string pointer;
     for_each_animated([&](std::string_view collection, const scene::Description &row) {
-      if (row.name == value.property) {
-        path = (collection == "lights" ? std::string(light_pointer_prefix) : "") + '/' + std::string(collection) + '/' +
-               std::to_string(*index) + '/' + std::string(row.path);
+      if (row.name == property) {
+        pointer = fmt::format("{}/{}/{}/{}", collection == "lights" ? light_pointer_prefix : "", collection, index,
+                              path.empty() ? row.path : path);
       }
     });
-    add_pointer(*value.track, output(values, width), path);
+    return pointer;
   }
 
   void add_pointer(const scene::Track &track, int output, const std::string &path)
@@ -230,8 +237,13 @@ class AnimationWriter {
     if (value.property == "intensity") {
       return 1.0 / lumen_per_watt;
     }
+    const auto *const material = std::get_if<Handle<scene::Material>>(&value.target);
     if (value.property == "emissive") {
-      return double(emissive_strength(scene_.materials()[std::get<Handle<scene::Material>>(value.target)].emissive));
+      return double(emissive_strength(scene_.materials()[*material].emissive));
+    }
+    if (value.property == "specular_color") {
+      const float ratio = reflectance_ratio(scene_.materials()[*material].ior);
+      return ratio == 0.0F ? 1.0 : double(ratio);
     }
     return 1.0;
   }

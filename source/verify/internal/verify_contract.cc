@@ -84,7 +84,12 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
   }
   checker.check(!mesh.tangents.empty() || !(material.normal_texture || material.coat_normal_texture),
                 "with tangents for its normal textures");
-  checker.check(mesh.tangents.empty() || material.has_frame(),
+  const bool may_turn_anisotropic = std::ranges::any_of(scene.animations, [&](const scene::Animation &animation) {
+    return std::ranges::any_of(animation.values, [&](const scene::AnimatedValue &value) {
+      return value.property == "anisotropy" && value.target == decltype(value.target)(mesh.material);
+    });
+  });
+  checker.check(mesh.tangents.empty() || material.has_frame() || may_turn_anisotropic,
                 "with tangents only where its material has a normal texture or anisotropy");
   checker.check(std::ranges::all_of(mesh.tangents,
                                     [](const glm::vec4 &t) {
