@@ -38,6 +38,8 @@ function(gnomon_compile_settings TARGET)
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual $<$<CXX_COMPILER_ID:Clang>:-Wno-keyword-macro -Wno-overlength-strings>
     $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
+  # Messages name files of the sources, and builds in two folders are equal (scripts/release).
+  target_compile_options(${TARGET} PRIVATE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
   if(GNOMON_SANITIZE)
     if(NOT "TEST" IN_LIST ARGN OR GNOMON_SANITIZE STREQUAL "thread")
       target_compile_options(${TARGET} PRIVATE -fsanitize=${GNOMON_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
