@@ -49,8 +49,8 @@ function(gnomon_compile_settings TARGET)
 endfunction()
 
 # gnomon_optimise_less(TARGET): for code that lists and prints, and calls other layers. Full optimisation takes a third of its compile time,
-# and makes no picture faster. GCC 13 and later refuse precompiled headers of -O3 for
-# files without the two other options, which -O1 does not set.
+# and makes no picture faster. GCC 13 and later refuse precompiled headers of -O3 for files without the two other options, which -O1 does
+# not set.
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-munroll-only-small-loops GNOMON_HAS_SMALL_LOOPS)
 function(gnomon_optimise_less TARGET)

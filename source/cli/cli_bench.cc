@@ -222,9 +222,8 @@ void bench_edits(const BenchOptions &options)
 
 void bench_start(const BenchOptions &options)
 {
-  const std::vector<measure::StartCost> costs =
-      measure::measure_start({program_file(), options.scene,
-                              arguments_of(options.world), options.backend, options.rounds});
+  const std::vector<measure::StartCost> costs = measure::measure_start(
+      {program_file(), options.scene, arguments_of(options.world), options.backend, options.rounds});
   fmt::print(
       "Whole processes in turn: milliseconds, median [quartiles] of {} rounds, the difference to the first, and the\n"
       "largest memory, which is at least that of this process. render: 640x360, one sample, to an EXR file; backend "

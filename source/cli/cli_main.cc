@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
+
 #include "cli_system.hh"
 
 #include "gltf_import.hh"
