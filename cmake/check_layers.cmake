@@ -41,6 +41,12 @@ set(shaders "")
 set(LAYERS source/trace source/memory source/output source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/table_tools
   source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/description_tool source/python shaders)
 
+# The files that use POSIX or Linux alone; doc/portability.md says for what.
+set(POSIX_FILES source/cli/cli_picture_module.cc source/cli/cli_system.cc source/cli/cli_workers.cc source/gpu/gl/gl_context.cc
+  source/gpu/vulkan/vulkan_context.cc source/measure/measure_start.cc source/memory/memory_pages.cc source/output/output_file.cc
+  source/python/python_renderer.hh source/shader_check/internal/shader_check_glslang.cc source/view/view_error_measurement.cc)
+set(POSIX_HEADER "^(sys/.*|X11/.*|xcb/.*|linux/.*|dlfcn.h|fcntl.h|poll.h|pthread.h|signal.h|spawn.h|unistd.h)$")
+
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.
 function(violation FILE INCLUDE WHY)
@@ -114,6 +120,9 @@ foreach(FILE ${FILES})
     endif()
     if(NAME MATCHES "${VULKAN_HEADER}")
       violation(${FILE} "${INCLUDE}" "only source/gpu/vulkan/ sees Vulkan headers")
+    endif()
+    if(NAME MATCHES "${POSIX_HEADER}" AND FILE MATCHES "^source/" AND NOT FILE IN_LIST POSIX_FILES)
+      violation(${FILE} "${INCLUDE}" "only the POSIX_FILES of ${CMAKE_CURRENT_LIST_FILE} see headers of POSIX")
     endif()
     if(OWN_LAYER)
       resolve(${FILE} ${NAME} PATH)

@@ -1,6 +1,9 @@
 # Writes the header OUTPUT with the commit of the sources in FOLDER, if it has changed: that of the archive they come from, or the current one.
 file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/commit.txt COMMIT)
-if(COMMIT MATCHES Format)
+if(COMMIT MATCHES "^[0-9a-f]+$")
+  # As many characters as below, whatever the repository that made the archive contains.
+  string(SUBSTRING ${COMMIT} 0 7 COMMIT)
+else()
   set(COMMIT "")
   execute_process(COMMAND git describe --always --dirty --abbrev=7 --exclude=* WORKING_DIRECTORY ${FOLDER}
     OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

@@ -4,6 +4,7 @@
 #include "cli_bench.hh"
 #include "cli_device.hh"
 #include "cli_output.hh"
+#include "cli_system.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -221,9 +222,8 @@ void bench_edits(const BenchOptions &options)
 
 void bench_start(const BenchOptions &options)
 {
-  const std::vector<measure::StartCost> costs =
-      measure::measure_start({std::filesystem::read_symlink("/proc/self/exe"), options.scene,
-                              arguments_of(options.world), options.backend, options.rounds});
+  const std::vector<measure::StartCost> costs = measure::measure_start(
+      {program_file(), options.scene, arguments_of(options.world), options.backend, options.rounds});
   fmt::print(
       "Whole processes in turn: milliseconds, median [quartiles] of {} rounds, the difference to the first, and the\n"
       "largest memory, which is at least that of this process. render: 640x360, one sample, to an EXR file; backend "

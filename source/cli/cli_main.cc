@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_system.hh"
+
 #include "gltf_import.hh"
 #include "gpu_error.hh"
 #include "output_roles.hh"
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <unistd.h>
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -39,20 +39,6 @@ static void keep_freed_memory()
   mallopt(M_MMAP_THRESHOLD, block_bytes_max);
   mallopt(M_TRIM_THRESHOLD, kept_bytes_max);
 #endif
-}
-
-/**
- * Opens the standard streams that are closed, because the next file would otherwise take the place of one and get what
- * is printed. What is printed to a closed output fails.
- */
-static void open_standard_streams()
-{
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (fcntl(stream, F_GETFD) < 0) {
-      // It takes the smallest free number, which is this one.
-      static_cast<void>(open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
-    }
-  }
 }
 
 /** \return \a status, or Status::Failed if the printed text could not be written to stdout */

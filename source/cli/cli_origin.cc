@@ -6,7 +6,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <sys/resource.h>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -36,14 +35,6 @@ Origin origin()
 std::string program_name()
 {
   return "gnomon " GNOMON_VERSION ", " GNOMON_COMMIT;
-}
-
-std::uint64_t memory_bytes_max()
-{
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  // Linux counts KiB.
-  return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace gnomon::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 namespace gnomon::cli {
@@ -22,7 +21,5 @@ struct Origin {
 
 /** Version and commit, of which a plan's parts must have the same: "gnomon 3.0, 1a2b3c4". */
 [[nodiscard]] std::string program_name();
-/** Most memory that the process has had so far, bytes. */
-[[nodiscard]] std::uint64_t memory_bytes_max();
 
 }  // namespace gnomon::cli

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/cli_picture_module.hh"
 
+#include "cli_system.hh"
+
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -13,7 +15,7 @@ namespace fs = std::filesystem;
 /** Beside the program in a build, and in the folder of libraries where the program is installed. */
 static fs::path module_path()
 {
-  const fs::path program_folder = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path program_folder = program_file().parent_path();
   const fs::path beside = program_folder / GNOMON_OIIO_MODULE;
   return fs::exists(beside) ? beside : (program_folder / GNOMON_MODULE_FOLDER / GNOMON_OIIO_MODULE).lexically_normal();
 }

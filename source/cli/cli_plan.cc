@@ -7,6 +7,7 @@
 #include "cli_output.hh"
 #include "cli_render.hh"
 #include "cli_render_options.hh"
+#include "cli_system.hh"
 #include "cli_work_plan.hh"
 
 #include <fmt/format.h>

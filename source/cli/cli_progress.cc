@@ -2,14 +2,13 @@
 #include "cli_progress.hh"
 
 #include "cli.hh"
-
-#include <unistd.h>
+#include "cli_system.hh"
 
 namespace gnomon::cli {
 
 Progress::Progress(bool has_lines, int picture_count, int sample_count)
     : has_lines_(has_lines),
-      is_terminal_(isatty(STDERR_FILENO) != 0),
+      is_terminal_(stderr_is_terminal()),
       picture_count_(picture_count),
       sample_count_(sample_count)
 {

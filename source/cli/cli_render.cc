@@ -13,6 +13,7 @@
 #include "cli_render_output.hh"
 #include "cli_render_report.hh"
 #include "cli_stop.hh"
+#include "cli_system.hh"
 #include "cli_time.hh"
 #include "cli_trace.hh"
 #include "cli_work_plan.hh"
@@ -25,7 +26,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -650,12 +650,10 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
   fs::current_path(fs::absolute(name.plan).parent_path() / plan.folder);
   RenderResult result;
   const auto print_line = [&](const char *part_status) {
-    std::array<char, 65> host{};
-    static_cast<void>(gethostname(host.data(), host.size() - 1));
     const double picture_seconds = std::reduce(result.frame_seconds.begin(), result.frame_seconds.end());
     const nlohmann::json line = {{"part", name.index},
                                  {"status", part_status},
-                                 {"host", host.data()},
+                                 {"host", host_name()},
                                  {"seconds", seconds_since(start)},
                                  {"memory_bytes", memory_bytes_max()},
                                  {"picture_seconds", picture_seconds},

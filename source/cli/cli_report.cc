@@ -7,6 +7,7 @@
 #include "cli_output.hh"
 #include "cli_picture.hh"
 #include "cli_render_options.hh"
+#include "cli_system.hh"
 #include "cli_time.hh"
 #include "cli_world.hh"
 
@@ -16,7 +17,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -76,7 +76,7 @@ class Progress {
   std::size_t count_;
   std::size_t done_ = 0;
   Clock::time_point start_ = Clock::now();
-  bool is_shown_ = isatty(STDERR_FILENO) != 0;
+  bool is_shown_ = stderr_is_terminal();
 };
 
 /** The techniques with these names or labels. \throws UsageError naming one that does not exist. */

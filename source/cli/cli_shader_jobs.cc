@@ -3,13 +3,13 @@
 
 #include "cli.hh"
 #include "cli_shader_checker.hh"
+#include "cli_system.hh"
 
 #include "output_file.hh"
 
 #include <xxhash.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -186,7 +186,7 @@ std::vector<ProgramCheck> run_jobs(const std::vector<ShaderJob> &jobs, const Job
       open.push_back(i);
     }
   }
-  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  const bool is_terminal = stderr_is_terminal();
   const std::vector<WorkResult> answers = run_in_workers(
       open.size(), options.limits, [&](std::size_t i) { return to_bytes(jobs[open[i]].check()); },
       [&](std::size_t done) {

@@ -4,6 +4,7 @@
 #include "cli_device.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
+#include "cli_system.hh"
 
 #include "measure_page.hh"
 #include "measure_report.hh"
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -85,7 +85,7 @@ std::vector<CaseResult> run_all(std::vector<verify::StabilityCase> cases)
   for (verify::StabilityCase &one : cases) {
     verify::StabilityResult result = verify::run(one);
     results.push_back({std::move(one), std::move(result)});
-    if (isatty(STDERR_FILENO)) {
+    if (stderr_is_terminal()) {
       const bool is_last = results.size() == cases.size();
       print_message("\r{}/{} cases{}", results.size(), cases.size(), is_last ? "\r\033[K" : "");
     }

@@ -312,8 +312,13 @@ class Checker {
   static bool is_difference_between_stages(const std::vector<LinkMessage> &messages)
   {
     return std::ranges::all_of(messages, [](const LinkMessage &message) {
-      const std::string_view head = std::string_view(message.text).substr(0, message.text.find(':'));
-      return message.severity == Severity::Warning || find_word(head, "stages") != std::string_view::npos;
+      // "Linking vertex and fragment stages: …", and from glslang 15 on
+      // "Linking fragment stage: … vertex stage: … fragment stage: …".
+      const std::string_view text = message.text;
+      const std::size_t head_length = std::min(text.find(':'), text.size());
+      return message.severity == Severity::Warning ||
+             find_word(text.substr(0, head_length), "stages") != std::string_view::npos ||
+             text.substr(head_length).find(" stage: ") != std::string_view::npos;
     });
   }
   void add_block_differences(const std::vector<LinkMessage> &errors)

@@ -156,7 +156,9 @@ void InterfaceRenderer::gather()
   };
   vertices_.clear();
   draws_.clear();
-  for (const ImDrawList *drawn : std::span(data.CmdLists, std::size_t(data.CmdListsCount))) {
+  // An array before Dear ImGui 1.90, and then a vector.
+  for (int i = 0; i < data.CmdListsCount; i++) {
+    const ImDrawList *drawn = data.CmdLists[i];
     for (const ImDrawCmd &command : drawn->CmdBuffer) {
       const gpu::ResourceId texture = texture_of(command);
       if (draws_.empty() || draws_.back().texture != texture) {

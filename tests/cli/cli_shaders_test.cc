@@ -4,6 +4,7 @@
 
 #include "cli_shader_programs.hh"
 #include "eevee_shaders.hh"
+#include "shader_check.hh"
 
 #include <nlohmann/json.hpp>
 
@@ -242,7 +243,10 @@ INSTANTIATE_TEST_SUITE_P(
              {"draw/draw_target_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted(exposure_scale)"}},
             "shared/draw_view_transform_shared.h",
             "float planted(float x)",
-            "function 'planted' calls itself"}),
+            // Without glslang's syntax tree the message is that of its linker.
+            shader_check::left_out_rules(shader_check::CheckTarget::OpenGlSpirv).empty()
+                ? "function 'planted' calls itself"
+                : "Recursion detected: planted"}),
     [](const auto &test) { return test.param.name; });
 
 TEST_F(ShadersTest, AVulkanOnlyMistakePassesForOpenGl)
@@ -569,10 +573,10 @@ TEST_F(ShadersTest, WarningsDoNotFail)
 {
   write_file("a.frag", VERSION +
                            "layout(location = 0) in vec3 a;\nlayout(location = 0) out float angle;\n"
-                           "void main() { angle = acos(dot(a, a.zyx)); }\n");
+                           "layout(binding = 1) uniform sampler2D unread;\nvoid main() { angle = a.x; }\n");
   const Finished finished = run("shaders check a.frag");
   EXPECT_EQ(finished.status, 0);
-  EXPECT_EQ(finished.out.find("a.frag:4: warning: acos of an unguarded value"), 0U) << finished.out;
+  EXPECT_EQ(finished.out.find("a.frag:4: warning: texture 'unread' is declared and never read"), 0U) << finished.out;
 }
 
 TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)

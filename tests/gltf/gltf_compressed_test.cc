@@ -183,7 +183,12 @@ TEST(GltfMeshopt, FiltersAreDecoded)
   std::vector<unsigned char> octahedral(sheet.vertex_count() * 8);
   meshopt_encodeFilterOct(octahedral.data(), sheet.vertex_count(), 8, 16, normals4.data());
   std::vector<unsigned char> exponential(sheet.vertex_count() * 12);
+#if MESHOPTIMIZER_VERSION < 190
   meshopt_encodeFilterExp(exponential.data(), sheet.vertex_count(), 12, 23, sheet.positions.data());
+#else
+  meshopt_encodeFilterExp(exponential.data(), sheet.vertex_count(), 12, 23, sheet.positions.data(),
+                          meshopt_EncodeExpSharedVector);
+#endif
   compress(builder, 0, "ATTRIBUTES", 12, "EXPONENTIAL", exponential);
   compress(builder, 1, "ATTRIBUTES", 8, "OCTAHEDRAL", octahedral);
   builder.document["accessors"][1].update({{"componentType", int(Int16)}, {"normalized", true}});

@@ -10,6 +10,7 @@
 #include <list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /** Internal to source/gltf. */
@@ -35,7 +36,7 @@ struct File {
 
 /** Element \a index of an array of the model. \throws Fault that names \a what, if there is none. */
 template <typename Elements>
-const auto &element(const Elements &elements, int index, const std::string &what)
+const auto &element(const Elements &elements, int index, std::string_view what)
 {
   if (index < 0 || static_cast<std::size_t>(index) >= elements.size()) {
     throw Fault(what, index < 0 ? "is missing"

@@ -45,8 +45,10 @@ Trees trees_of(const Model &model)
   std::vector<bool> is_reached(nodes.size(), false);
   for (std::size_t i = 0; i < order.size(); i++) {
     is_reached[order[i]] = true;
-    const std::vector<int> &children = nodes[order[i]].children;
-    order.insert(order.end(), children.begin(), children.end());
+    // GCC 14 warns of order.insert() here.
+    for (const int child : nodes[order[i]].children) {
+      order.push_back(child);
+    }
   }
   const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
   if (lost != is_reached.end()) {
