@@ -40,7 +40,7 @@ inline constexpr double world_lobe_directions = 12.0;
 
 /** Whether pixels without a surface show a background. */
 [[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
-/** Whether probes hold the occlusion of the world's light. */
+/** Whether the occlusion of the world's light is traced, at probes. */
 [[nodiscard]] bool has_world_occlusion(const Settings &settings, const render_scene::RenderScene &scene);
 
 /** The scene's world on the device. Internal to the engine. */

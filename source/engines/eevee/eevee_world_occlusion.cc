@@ -40,13 +40,13 @@ glm::vec3 ray_direction(std::size_t probe, int ray)
   return direction * glm::vec3(1 - 2 * is_negative);
 }
 
-float luminance(const glm::vec3 &radiance)
+double luminance(const glm::dvec3 &radiance)
 {
-  return glm::dot(radiance, glm::vec3(0.2126F, 0.7152F, 0.0722F));
+  return glm::dot(radiance, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
 /** Luminance of the rest of \a world from \a direction. */
-float luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
+double luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
 {
   constexpr glm::ivec2 size = render_scene::WorldLight::size;
   const glm::ivec2 texel(shared::equirectangular(direction) * glm::vec2(size));
@@ -141,7 +141,7 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
     Whole &whole = wholes[probe];
     for (int ray = 0; ray < probe_rays; ray++) {
       const glm::vec3 direction = ray_direction(probe, ray);
-      const float light = luminance(world, direction);
+      const auto light = float(luminance(world, direction));
       const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
       const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
       const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
@@ -170,7 +170,7 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
     double whole = 0.0;
   };
   std::array<Cell, std::size_t(grid.x * grid.y)> cells;
-  Cell light_of_all;
+  Cell all;
   for (std::size_t probe = 0; probe < std::size_t(probe_count()); probe++) {
     const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
     // A probe counts by the surfaces that face it: none do inside of a body, below a ground or high above it.
@@ -182,17 +182,16 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
       Cell &sum = cells[std::size_t(cell.y * grid.x + cell.x)];
       sum.whole += seen;
       sum.arriving += hits[std::size_t(ray)] == RayHit::None ? seen : 0.0;
-      const double light = seen * double(luminance(*world, direction));
-      light_of_all.whole += light;
-      light_of_all.arriving += hits[std::size_t(ray)] == RayHit::None ? light : 0.0;
+      const double light = seen * luminance(*world, direction);
+      all.whole += light;
+      all.arriving += hits[std::size_t(ray)] == RayHit::None ? light : 0.0;
     }
   }
   WorldDirections result{{world, &world->rest_directions}, WorldDirections::few};
-  if (!(light_of_all.arriving > 0.0)) {
+  if (!(all.arriving > 0.0)) {
     return result;
   }
-  // For the least variance, the density is proportional to the square root of the mean square of what a direction
-  // brings.
+  // What a direction brings to a place is all or nothing. The least variance has the root of the mean of its square.
   const auto brought = [&](double column, double row) {
     const glm::dvec2 low = glm::floor(glm::dvec2(column, row));
     double value = 0.0;
@@ -216,7 +215,7 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
     const double solid_angle = render_scene::texel_solid_angle(y, size.x, size.y);
     for (int x = 0; x < size.x; x++) {
       const double value = brought(grid.x * (x + 0.5) / size.x - 0.5, grid.y * height - 0.5);
-      const double light = solid_angle * double(luminance(world->rest[importance.size()]));
+      const double light = solid_angle * luminance(world->rest[importance.size()]);
       importance.push_back(float(value));
       sum += light * value;
       whole += light;
@@ -230,7 +229,7 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
   result.distribution =
       std::make_shared<const render_scene::WorldDistribution>(render_scene::rest_distribution(world->rest, importance));
   // In an open place half of the directions are below the ground. In a room, most meet a wall.
-  if (light_of_all.arriving < 0.125 * light_of_all.whole) {
+  if (all.arriving < 0.125 * all.whole) {
     result.count = WorldDirections::many;
   }
   return result;
