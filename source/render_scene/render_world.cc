@@ -280,7 +280,8 @@ double texel_solid_angle(int y, int width, int height)
   return 2.0 * pi / width * (std::sin(((y + 1.0) / height - 0.5) * pi) - std::sin((double(y) / height - 0.5) * pi));
 }
 
-WorldDistribution::WorldDistribution(glm::ivec2 size, std::vector<Texel> texels, double even_share)
+WorldDistribution::WorldDistribution(glm::ivec2 size, std::vector<Texel> texels, double even_share,
+                                     std::span<const float> importance)
     : size_(size), texels_(std::move(texels))
 {
   double light = 0.0;
@@ -306,8 +307,9 @@ WorldDistribution::WorldDistribution(glm::ivec2 size, std::vector<Texel> texels,
       row_sum = 0.0;
     }
     const double solid_angle = texel_solid_angle(texels_[i].y, size.x, size.y);
-    const double weight =
-        solid_angle * ((1.0 - even_share) * luminance(texels_[i].radiance) / light + even_share / area);
+    const double weight = solid_angle *
+                          ((1.0 - even_share) * luminance(texels_[i].radiance) / light + even_share / area) *
+                          (importance.empty() ? 1.0 : double(importance[i]));
     row_sum += weight;
     sum += weight;
     cumulative_.push_back(row_sum);
@@ -344,6 +346,17 @@ WorldDirection WorldDistribution::at(const glm::dvec2 &place) const
   return direction;
 }
 
+WorldDistribution rest_distribution(std::span<const glm::vec3> rest, std::span<const float> importance)
+{
+  const auto width = std::size_t(WorldLight::size.x);
+  std::vector<WorldDistribution::Texel> texels;
+  texels.reserve(rest.size());
+  for (std::size_t i = 0; i < rest.size(); i++) {
+    texels.push_back({int(i % width), int(i / width), rest[i]});
+  }
+  return {WorldLight::size, std::move(texels), 0.25, importance};
+}
+
 WorldLight world_light(const scene::World &world)
 {
   WorldLight light;
@@ -377,11 +390,7 @@ WorldLight world_light(const scene::World &world)
     light.suns.push_back(sun_of(std::move(patch), light.suns.size()));
   }
   light.harmonics = harmonics_of(light.rest);
-  std::vector<WorldDistribution::Texel> texels;
-  for (std::size_t i = 0; i < light.rest.size(); i++) {
-    texels.push_back({int(i % std::size_t(size.x)), int(i / std::size_t(size.x)), light.rest[i]});
-  }
-  light.rest_directions = WorldDistribution(size, std::move(texels), 0.25);
+  light.rest_directions = rest_distribution(light.rest);
   return light;
 }
 

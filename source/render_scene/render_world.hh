@@ -29,7 +29,7 @@ struct WorldDirection {
   double solid_angle = 0.0;
 };
 
-/** Samples directions of an equirectangular picture with a density proportional to its luminance. */
+/** Samples directions of an equirectangular picture with a density that follows its luminance. */
 class WorldDistribution {
  public:
   struct Texel {
@@ -42,8 +42,11 @@ class WorldDistribution {
   /**
    * \a size: the size of the picture. \a texels: the sampled texels, sorted by row and then by column. \a even_share:
    * the fraction of the samples, in [0, 1], that are distributed uniformly over the solid angle of the texels.
+   * \a importance: empty, or for each texel a factor of its density, at least 0. The light is the same with any
+   * factors, as each direction has the radiance divided by its density: texels with light need a factor above 0.
    */
-  WorldDistribution(glm::ivec2 size, std::vector<Texel> texels, double even_share);
+  WorldDistribution(glm::ivec2 size, std::vector<Texel> texels, double even_share,
+                    std::span<const float> importance = {});
 
   /** Whether all texels are black. */
   [[nodiscard]] bool empty() const
@@ -96,7 +99,7 @@ struct WorldLight {
   std::vector<Sun> suns;
   /** Radiance of the rest as an equirectangular picture, rows from the bottom. Texels of suns are black. */
   std::vector<glm::vec3> rest;
-  /** Empty if the rest is black. */
+  /** Empty if the rest is black. \see rest_distribution */
   WorldDistribution rest_directions;
   /**
    * Irradiance of the rest divided by π, in real spherical harmonics up to order 2 (Ramamoorthi and Hanrahan 2001). The
@@ -110,6 +113,10 @@ struct WorldLight {
     return suns.empty() && rest_directions.empty();
   }
 };
+
+/** Distribution of directions over \a rest, a picture like WorldLight::rest. \a importance: \see WorldDistribution */
+[[nodiscard]] WorldDistribution rest_distribution(std::span<const glm::vec3> rest,
+                                                  std::span<const float> importance = {});
 
 /** Splits \a world into suns and the rest. */
 [[nodiscard]] WorldLight world_light(const scene::World &world);

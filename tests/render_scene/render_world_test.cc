@@ -172,6 +172,23 @@ TEST(WorldDistribution, IntegratesItsTexels)
   EXPECT_NEAR(tilted.x, 4.0 * pi / 3.0, 4e-3 * 4.0 * pi / 3.0);
 }
 
+TEST(WorldDistribution, WithAnyImportanceHasTheSameLight)
+{
+  const WorldLight light =
+      world_light(world_of([](const glm::dvec3 &v) { return glm::vec3(1.0F + 0.5F * float(v.y)); }));
+  std::vector<float> importance;
+  for (std::size_t i = 0; i < light.rest.size(); i++) {
+    importance.push_back(0.1F + 3.0F * float(i % 256) / 256.0F + (i > 16384 ? 1.0F : 0.0F));
+  }
+  const auto irradiance_up = [](const WorldDistribution &directions) {
+    return sum_over(directions, [](const glm::dvec3 &v) { return std::max(v.y, 0.0); }).g;
+  };
+  // ∫ (1 + y / 2) y over the upper half.
+  const double expected = pi + pi / 3.0;
+  EXPECT_NEAR(irradiance_up(light.rest_directions), expected, 1e-3 * expected);
+  EXPECT_NEAR(irradiance_up(rest_distribution(light.rest, importance)), expected, 2e-3 * expected);
+}
+
 TEST(WorldDistribution, OfASunHasItsLightWhereItIs)
 {
   const glm::dvec3 back = glm::normalize(glm::dvec3(-1, 0.3, 0.02));

@@ -87,6 +87,7 @@ void Engine::init(draw::Viewport &viewport)
 
 void Engine::sync_lights(SharedData &shared)
 {
+  shared.world.sync_occlusion(scene_, settings_);
   if (shared.lights.sync(scene_, settings_, settings_revision_, shaders_->revision(), shared.shadows)) {
     shared.shadow_pass.forget_casters();
   }

@@ -3,7 +3,6 @@
 
 #include "eevee_sequence_shared.h"
 #include "eevee_sobol.hh"
-#include "eevee_world.hh"
 
 #include <glm/geometric.hpp>
 
@@ -102,11 +101,15 @@ glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const 
 }
 
 LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
-                       std::shared_ptr<const render_scene::WorldLight> world, int sample_count,
-                       std::shared_ptr<const scene::EmissiveSurfaces> emission, int emission_count)
-    : world_(std::move(world)), emission_(std::move(emission)), sample_count_(sample_count), toward_ws_(toward_ws)
+                       std::shared_ptr<const render_scene::WorldLight> world, const WorldDirections &directions,
+                       int sample_count, std::shared_ptr<const scene::EmissiveSurfaces> emission, int emission_count)
+    : world_(std::move(world)),
+      directions_(directions),
+      emission_(std::move(emission)),
+      sample_count_(sample_count),
+      toward_ws_(toward_ws)
 {
-  const std::size_t world_first = placed.size() - (world_ ? world_lamps(*world_, LampShading::Point).size() : 0);
+  const std::size_t world_first = placed.size() - (world_ ? world_->suns.size() + std::size_t(directions_.count) : 0);
   const std::size_t emission_first = world_first - (emission_ ? std::size_t(emission_count) : 0);
   for (int i = 0; i < lamps.light_count(); i++) {
     const std::size_t index = lamps.lamp_index[std::size_t(i)];
@@ -119,9 +122,9 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
     if (index >= world_first) {
       const std::size_t part = index - world_first;
       const std::size_t sun_count = world_->suns.size();
-      sized.world = part < sun_count ? &world_->suns[part].directions : &world_->rest_directions;
+      sized.world = part < sun_count ? &world_->suns[part].directions : directions_.distribution.get();
       sized.direction = part < sun_count ? 0 : std::uint32_t(part - sun_count);
-      sized.direction_count = part < sun_count ? 1 : world_direction_count;
+      sized.direction_count = part < sun_count ? 1 : std::uint32_t(directions_.count);
     }
     else if (index >= emission_first) {
       sized.is_emission = true;
@@ -192,7 +195,7 @@ SampledLampPoints LampPoints::sample(std::uint32_t index, std::uint32_t seed, Sa
     }
     if (sized.world) {
       sampled.points.push_back(world_point(sized, index, seed));
-      if (sized.world != &world_->rest_directions) {
+      if (sized.world != directions_.distribution.get()) {
         add_sun_points(sized, index, seed, sampled);
       }
       continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_lamps.hh"
+#include "eevee_world.hh"
 #include "eevee_world_shared.h"
 
 #include "render_world.hh"
@@ -67,13 +68,15 @@ class LampPoints {
   /**
    * \a placed: the list from which \a lamps was made. \a toward_ws: centre of the receivers, \see point_of.
    * \a world: the world whose world_lamps are the last entries of \a placed; nullptr if there is none.
+   * \a directions: those of its rest.
    * \a sample_count: samples for each pixel of the picture.
    * \a emission: the surfaces of which the emission_lamps before these are points; nullptr if there are none.
    * \a emission_count: number of these lamps.
    */
   LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
-             std::shared_ptr<const render_scene::WorldLight> world = {}, int sample_count = 1,
-             std::shared_ptr<const scene::EmissiveSurfaces> emission = {}, int emission_count = 0);
+             std::shared_ptr<const render_scene::WorldLight> world = {}, const WorldDirections &directions = {},
+             int sample_count = 1, std::shared_ptr<const scene::EmissiveSurfaces> emission = {},
+             int emission_count = 0);
 
   [[nodiscard]] bool empty() const
   {
@@ -110,6 +113,7 @@ class LampPoints {
   [[nodiscard]] LampPoint emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
 
   std::shared_ptr<const render_scene::WorldLight> world_;
+  WorldDirections directions_;
   std::shared_ptr<const scene::EmissiveSurfaces> emission_;
   std::vector<Sized> sized_;
   int sample_count_ = 1;

@@ -95,7 +95,7 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   std::ranges::copy(emission_lamps(emissive_count, bounds_ws), std::back_inserter(placed));
   const std::size_t world_first = placed.size();
   if (world) {
-    std::ranges::copy(world_lamps(*world, shading), std::back_inserter(placed));
+    std::ranges::copy(world_lamps(*world, world_.directions().count), std::back_inserter(placed));
   }
   const int device_most = limits.buffer_texels_max / LIGHT_TEXELS;
   Lamps made = make_lamps(placed, shading, std::size_t(std::clamp(device_most, LIGHT_MAX, LIGHT_COUNT_MAX)));
@@ -121,7 +121,7 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   planned_bounds_ws = bounds_ws;
   points = shading == LampShading::Point
                ? LampPoints(placed, lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
-                            sample_count, emission_.surfaces(), settings.emissive_point_count)
+                            world_.directions(), sample_count, emission_.surfaces(), settings.emissive_point_count)
                : LampPoints();
   is_left_out.clear();
   for (int i = 0; i < lamps.light_count(); i++) {

@@ -21,7 +21,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
         shared.lights.plan().lamps.features | shared.shadows.features() | specular | asked_features(settings_) |
         (materials.alpha_min < shared.lights.plan().lamps.highlight_alpha ? Feature::LampShape | Feature::LampHighlights
                                                                           : Feature::None) |
-        (has_world_occlusion(settings_, scene_) ? Feature::WorldOcclusion : Feature::None));
+        (settings_.planned_sample_count() == 1 && has_world_occlusion(settings_, scene_) ? Feature::WorldOcclusion
+                                                                                         : Feature::None));
   }
   // The inputs of the programs of some materials, beyond those of the frame. They are the same for all viewports, as
   // they share the blocks.

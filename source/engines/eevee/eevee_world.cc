@@ -19,14 +19,13 @@ namespace gnomon::eevee {
 
 static_assert(WORLD_SUN_MAX == render_scene::WorldLight::sun_max);
 
-std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading)
+std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, int direction_count)
 {
   std::vector<scene::PlacedLamp> lamps;
   for (const render_scene::WorldLight::Sun &sun : world.suns) {
     lamps.push_back(sun.lamp);
   }
-  const bool has_directions = shading == LampShading::Point && !world.rest_directions.empty();
-  for (int i = 0; has_directions && i < world_direction_count; i++) {
+  for (int i = 0; i < direction_count; i++) {
     scene::PlacedLamp &lamp = lamps.emplace_back();
     lamp.name = "world direction " + std::to_string(i + 1);
     lamp.kind = scene::LampKind::Sun;
@@ -49,12 +48,40 @@ bool has_background(const Settings &settings, const render_scene::RenderScene &s
 
 bool has_world_occlusion(const Settings &settings, const render_scene::RenderScene &scene)
 {
-  return settings.planned_sample_count() == 1 && settings.shadow.kind != scene::ShadowKind::None &&
-         settings.light.has(LightPart::Kind::World) && scene.world() && !scene.world()->rest_directions.empty();
+  return settings.shadow.kind != scene::ShadowKind::None && settings.light.has(LightPart::Kind::World) &&
+         scene.world() && !scene.world()->rest_directions.empty();
 }
 
 SceneWorld::SceneWorld() = default;
 SceneWorld::~SceneWorld() = default;
+
+void SceneWorld::sync_occlusion(const render_scene::RenderScene &scene, const Settings &settings)
+{
+  const bool is_sampled = settings.planned_sample_count() > 1;
+  const bool is_traced = has_world_occlusion(settings, scene);
+  const OcclusionKey key{scene.world_revision(), is_traced ? scene.objects().revision() : 0,
+                         is_traced ? scene.passes_revision() : 0, is_traced, is_sampled};
+  if (occlusion_key_ == key) {
+    return;
+  }
+  occlusion_key_ = key;
+  is_block_written_ = false;
+  directions_ = {};
+  if (!is_traced) {
+    occlusion_.reset();
+  }
+  else {
+    if (!occlusion_) {
+      occlusion_ = std::make_unique<WorldOcclusion>();
+    }
+    occlusion_->update(scene);
+  }
+  const std::shared_ptr<const render_scene::WorldLight> &world = scene.world();
+  if (is_sampled && world && !world->rest_directions.empty()) {
+    directions_ = occlusion_ ? occlusion_->directions(world)
+                             : WorldDirections{{world, &world->rest_directions}, WorldDirections::few};
+  }
+}
 
 void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings)
 {
@@ -64,29 +91,13 @@ void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature fe
     levels_ = {};
   }
   if (!has(features, Feature::World)) {
-    occlusion_.reset();
-    probe_key_.reset();
     return;
   }
-  std::optional<ProbeKey> probe_key;
-  if (has_world_occlusion(settings, scene)) {
-    probe_key = {scene.world_revision(), scene.objects().revision(), scene.passes_revision()};
-  }
-  if (!probe_key) {
-    occlusion_.reset();
-  }
-  else if (probe_key_ != probe_key) {
-    if (!occlusion_) {
-      occlusion_ = std::make_unique<WorldOcclusion>();
-    }
-    occlusion_->update(scene);
-  }
-  const bool are_probes_current = std::exchange(probe_key_, probe_key) == probe_key;
   if (!block_) {
     block_ = scene.device().create_buffer({"world_block", gpu::BufferKind::Uniform, sizeof(shared::WorldBlock)});
-    write_block(scene);
+    is_block_written_ = false;
   }
-  else if (!are_probes_current) {
+  if (!is_block_written_) {
     write_block(scene);
   }
   if (!has(features, Feature::Specular)) {
@@ -105,11 +116,12 @@ void SceneWorld::write_block(const render_scene::RenderScene &scene)
     block.harmonics[i] = glm::vec4(world.harmonics[i], 0.0F);
   }
   block.is_sampled = key_.sample_count > 1 ? 1 : 0;
-  const double lobe_share = world_lobe_directions / (double(world_direction_count) * key_.sample_count);
+  const double lobe_share = world_lobe_directions / (double(std::max(directions_.count, 1)) * key_.sample_count);
   block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
-  if (occlusion_) {
+  if (occlusion_ && key_.sample_count == 1) {
     occlusion_->write(block);
   }
+  is_block_written_ = true;
   scene.device().update(block_, block);
 }
 
@@ -203,7 +215,7 @@ void SceneWorld::report(ResourceReport &report) const
 {
   report.add_target(levels_, "world_levels", "specular reflection of the world",
                     report.why_no_feature(report.has(Feature::World) ? Feature::Specular : Feature::World));
-  const int probe_count = occlusion_ ? occlusion_->probe_count() : 0;
+  const int probe_count = occlusion_ && key_.sample_count == 1 ? occlusion_->probe_count() : 0;
   report.add_block(block_, "world_block",
                    probe_count > 0
                        ? fmt::format("light from all around, and its parts that arrive at {} places", probe_count)

@@ -18,20 +18,29 @@ struct ResourceReport;
 struct Settings;
 class WorldOcclusion;
 
-/** Number of directions of WorldLight::rest in each sample of a picture with several samples. */
-inline constexpr int world_direction_count = 4;
+/** The directions of WorldLight::rest that each sample draws in a picture of several samples. */
+struct WorldDirections {
+  /** Null: there are none. */
+  std::shared_ptr<const render_scene::WorldDistribution> distribution{};
+  int count = 0;
+
+  /** `count` where much of the light arrives, and where little does, so that few of all directions light a point. */
+  static constexpr int few = 4;
+  static constexpr int many = 8;
+};
+
 /** A specular lobe is lit by sampled directions if it contains at least this number of them over all samples. */
 inline constexpr double world_lobe_directions = 12.0;
 
 /**
- * Lamps without a node that light a scene with \a world. LampShading::Whole: the suns of the world. LampShading::Point:
- * also `world_direction_count` lamps for WorldLight::rest, to which LampPoints gives a new direction in each sample.
+ * Lamps without a node that light a scene with \a world: its suns, and \a direction_count lamps for WorldLight::rest,
+ * to which LampPoints gives a new direction in each sample.
  */
-[[nodiscard]] std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading);
+[[nodiscard]] std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, int direction_count);
 
 /** Whether pixels without a surface show a background. */
 [[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
-/** Whether pictures have one sample, in which probes hold the occlusion of the world's light. */
+/** Whether the occlusion of the world's light is traced, at probes. */
 [[nodiscard]] bool has_world_occlusion(const Settings &settings, const render_scene::RenderScene &scene);
 
 /** The scene's world on the device. Internal to the engine. */
@@ -43,8 +52,18 @@ class SceneWorld {
   ~SceneWorld();
 
   /**
+   * Trace the light that arrives in the scene, if an input changed: in pictures of one sample it is drawn, and in
+   * others it chooses the directions of the world. Creates no resources on the device.
+   */
+  void sync_occlusion(const render_scene::RenderScene &scene, const Settings &settings);
+  /** Those of the last sync_occlusion. None in pictures of one sample. */
+  [[nodiscard]] const WorldDirections &directions() const
+  {
+    return directions_;
+  }
+  /**
    * Create the resources of the world's light that \a features need, and free the others.
-   * \pre with Feature::World, the scene has a world
+   * \pre with Feature::World, the scene has a world. sync_occlusion was called
    */
   void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings);
   /** Create the picture of the background if it is shown and changed; free it if it is not shown. */
@@ -72,14 +91,16 @@ class SceneWorld {
   void write_block(const render_scene::RenderScene &scene);
   void make_levels(const render_scene::RenderScene &scene);
 
-  /** Inputs from which the probes of `block_` were made. */
-  struct ProbeKey {
+  /** Inputs from which `occlusion_` and `directions_` were made; the revisions of casters are 0 if none are traced. */
+  struct OcclusionKey {
     /** Revisions of the world and of the inputs of its casters. */
     std::uint64_t world = 0;
     std::uint64_t objects = 0;
     std::uint64_t passes = 0;
+    bool is_traced = false;
+    bool is_sampled = false;
 
-    bool operator==(const ProbeKey &) const = default;
+    bool operator==(const OcclusionKey &) const = default;
   };
   /** Inputs from which `block_` and `levels_` were made. */
   struct Key {
@@ -92,9 +113,12 @@ class SceneWorld {
     bool operator==(const Key &) const = default;
   };
   Key key_;
-  std::optional<ProbeKey> probe_key_;
-  /** Empty unless pictures have one sample, a world and shadows. */
+  std::optional<OcclusionKey> occlusion_key_;
+  /** Empty unless pictures have a world and shadows. */
   std::unique_ptr<WorldOcclusion> occlusion_;
+  WorldDirections directions_;
+  /** `block_` is that of `occlusion_` and `directions_`. */
+  bool is_block_written_ = false;
   /** Empty without Feature::World. */
   gpu::Buffer block_;
   /** Prefiltered levels for specular reflection. Empty without specular materials. */

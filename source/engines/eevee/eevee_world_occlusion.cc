@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numbers>
@@ -39,13 +40,18 @@ glm::vec3 ray_direction(std::size_t probe, int ray)
   return direction * glm::vec3(1 - 2 * is_negative);
 }
 
+double luminance(const glm::dvec3 &radiance)
+{
+  return glm::dot(radiance, glm::dvec3(0.2126, 0.7152, 0.0722));
+}
+
 /** Luminance of the rest of \a world from \a direction. */
-float luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
+double luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
 {
   constexpr glm::ivec2 size = render_scene::WorldLight::size;
   const glm::ivec2 texel(shared::equirectangular(direction) * glm::vec2(size));
   const glm::ivec2 inside = glm::clamp(texel, glm::ivec2(0), size - 1);
-  return glm::dot(world.rest[std::size_t(inside.y * size.x + inside.x)], glm::vec3(0.2126F, 0.7152F, 0.0722F));
+  return luminance(world.rest[std::size_t(inside.y * size.x + inside.x)]);
 }
 
 bool meets(const scene::Bounds &box, const glm::vec3 &origin, const glm::vec3 &direction)
@@ -135,7 +141,7 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
     Whole &whole = wholes[probe];
     for (int ray = 0; ray < probe_rays; ray++) {
       const glm::vec3 direction = ray_direction(probe, ray);
-      const float light = luminance(world, direction);
+      const auto light = float(luminance(world, direction));
       const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
       const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
       const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
@@ -153,6 +159,80 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
     whole_positive_ += whole.positive;
     whole_negative_ += whole.negative;
   }
+}
+
+WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_scene::WorldLight> &world) const
+{
+  // Columns of azimuth and rows of height: cells of the same solid angle.
+  constexpr glm::ivec2 grid(32, 16);
+  struct Cell {
+    double arriving = 0.0;
+    double whole = 0.0;
+  };
+  std::array<Cell, std::size_t(grid.x * grid.y)> cells;
+  Cell all;
+  for (std::size_t probe = 0; probe < std::size_t(probe_count()); probe++) {
+    const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
+    // A probe counts by the surfaces that face it: none do inside of a body, below a ground or high above it.
+    const auto seen = double(std::ranges::count(hits.first(body_rays), RayHit::Front));
+    for (int ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = ray_direction(probe, ray);
+      const glm::vec2 place(shared::equirectangular(direction).x, 0.5F + 0.5F * direction.y);
+      const glm::ivec2 cell = glm::min(glm::ivec2(place * glm::vec2(grid)), grid - 1);
+      Cell &sum = cells[std::size_t(cell.y * grid.x + cell.x)];
+      sum.whole += seen;
+      sum.arriving += hits[std::size_t(ray)] == RayHit::None ? seen : 0.0;
+      const double light = seen * luminance(*world, direction);
+      all.whole += light;
+      all.arriving += hits[std::size_t(ray)] == RayHit::None ? light : 0.0;
+    }
+  }
+  WorldDirections result{{world, &world->rest_directions}, WorldDirections::few};
+  if (!(all.arriving > 0.0)) {
+    return result;
+  }
+  // What a direction brings to a place is all or nothing. The least variance has the root of the mean of its square.
+  const auto brought = [&](double column, double row) {
+    const glm::dvec2 low = glm::floor(glm::dvec2(column, row));
+    double value = 0.0;
+    for (int corner = 0; corner < 4; corner++) {
+      const glm::dvec2 near = low + glm::dvec2(corner & 1, corner >> 1);
+      const glm::dvec2 share = 1.0 - glm::abs(glm::dvec2(column, row) - near);
+      const int x = (int(near.x) + grid.x) % grid.x;
+      const int y = std::clamp(int(near.y), 0, grid.y - 1);
+      const Cell &cell = cells[std::size_t(y * grid.x + x)];
+      value += share.x * share.y * cell.arriving / std::max(cell.whole, 1.0);
+    }
+    return std::sqrt(value);
+  };
+  constexpr glm::ivec2 size = render_scene::WorldLight::size;
+  std::vector<float> importance;
+  importance.reserve(world->rest.size());
+  double sum = 0.0;
+  double whole = 0.0;
+  for (int y = 0; y < size.y; y++) {
+    const double height = 0.5 + 0.5 * render_scene::direction_of(0.0, (y + 0.5) / size.y).y;
+    const double solid_angle = render_scene::texel_solid_angle(y, size.x, size.y);
+    for (int x = 0; x < size.x; x++) {
+      const double value = brought(grid.x * (x + 0.5) / size.x - 0.5, grid.y * height - 0.5);
+      const double light = solid_angle * luminance(world->rest[importance.size()]);
+      importance.push_back(float(value));
+      sum += light * value;
+      whole += light;
+    }
+  }
+  // For directions from which light arrives only where no probe is.
+  constexpr double least = 0.15;
+  for (float &value : importance) {
+    value = float(least + (1.0 - least) * double(value) * whole / sum);
+  }
+  result.distribution =
+      std::make_shared<const render_scene::WorldDistribution>(render_scene::rest_distribution(world->rest, importance));
+  // In an open place half of the directions are below the ground. In a room, most meet a wall.
+  if (all.arriving < 0.125 * all.whole) {
+    result.count = WorldDirections::many;
+  }
+  return result;
 }
 
 void WorldOcclusion::update(const render_scene::RenderScene &scene)

@@ -3,20 +3,23 @@
 
 #include "eevee_caster_tree.hh"
 
+#include "eevee_world.hh"
 #include "eevee_world_shared.h"
 #include "render_world.hh"
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace gnomon::eevee {
 
 /**
- * The parts of a world's light that arrive at points of a grid over the scene (probes), for pictures of one sample.
- * They are traced on the CPU: shadow maps for enough directions would cost more. Internal to the engine.
+ * The parts of a world's light that arrive at points of a grid over the scene (probes): for pictures of one sample, and
+ * to choose the directions of others. They are traced on the CPU: shadow maps for enough directions would cost more.
+ * Internal to the engine.
  */
 class WorldOcclusion {
  public:
@@ -27,6 +30,11 @@ class WorldOcclusion {
   void update(const render_scene::RenderScene &scene);
   /** Write the probes to the members of \a block that have them. */
   void write(shared::WorldBlock &block) const;
+  /**
+   * Directions of the rest of \a world, that of the last update(). Those from which more light arrives at the probes
+   * are more frequent. \pre the rest is not black
+   */
+  [[nodiscard]] WorldDirections directions(const std::shared_ptr<const render_scene::WorldLight> &world) const;
   /** Number of probes; 0 if nothing blocks the light. */
   [[nodiscard]] int probe_count() const
   {

@@ -193,9 +193,11 @@ TEST(LampPoints, PointsOfTheWorldsSunsHaveTheirLightAndAreWithinThem)
       render_scene::world_light({.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))}));
   ASSERT_EQ(world->suns.size(), 2U);
   std::vector<scene::PlacedLamp> placed = {lamp_of(scene::LampKind::Spot)};
-  std::ranges::copy(world_lamps(*world, LampShading::Point), std::back_inserter(placed));
+  const WorldDirections directions{{world, &world->rest_directions}, WorldDirections::few};
+  std::ranges::copy(world_lamps(*world, directions.count), std::back_inserter(placed));
   constexpr std::uint32_t sample_count = 16;
-  const LampPoints points(placed, make_lamps(placed, LampShading::Point), glm::vec3(0.0F), world, sample_count);
+  const LampPoints points(placed, make_lamps(placed, LampShading::Point), glm::vec3(0.0F), world, directions,
+                          sample_count);
   std::array<double, 2> light{};
   std::set<float> places;
   for (std::uint32_t i = 0; i < sample_count; i++) {

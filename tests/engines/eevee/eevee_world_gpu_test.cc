@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A world's light against closed forms and the reference, on the driver.
+#include "eevee_closed_forms.hh"
 #include "eevee_test_scene.hh"
 #include "eevee_world.hh"
 #include "gpu_device_fixture.hh"
@@ -149,6 +150,61 @@ TEST_F(WorldGpuTest, OcclusionConvergesToTheReference)
   const glm::vec3 expected = reference_middle();
   EXPECT_LT(expected.b, 0.55F);
   expect_relative(middle(64), expected, 0.04F);
+}
+
+/** Each pixel of the floor of a room with a window in its ceiling has the form factor of the window. */
+TEST_F(WorldGpuTest, LightThroughAWindowConvergesToItsFormFactor)
+{
+  scene.set_world(scene::World{});
+  const auto box = test::add_box_mesh(scene, material);
+  const auto add = [&](const glm::dvec3 &min, const glm::dvec3 &max) {
+    test::add_object(scene, box, glm::scale(glm::translate(glm::dmat4(1.0), 0.5 * (min + max)), 0.5 * (max - min)));
+  };
+  // Walls around a floor of 4 m, and a thin ceiling with a hole of 1 m.
+  add({-2.2, -2.2, -0.2}, {-2.0, 2.2, 3.0});
+  add({2.0, -2.2, -0.2}, {2.2, 2.2, 3.0});
+  add({-2.0, -2.2, -0.2}, {2.0, -2.0, 3.0});
+  add({-2.0, 2.0, -0.2}, {2.0, 2.2, 3.0});
+  add({-2.2, -2.2, 3.0}, {-0.5, 2.2, 3.01});
+  add({0.5, -2.2, 3.0}, {2.2, 2.2, 3.01});
+  add({-0.5, -2.2, 3.0}, {0.5, -0.5, 3.01});
+  add({-0.5, 0.5, 3.0}, {0.5, 2.2, 3.01});
+  constexpr int size = 32;
+  constexpr double half = 1.5;
+  constexpr double eye = 2.9;
+  camera = test::camera_at({0, 0, eye}, {0, 0, 0}, float(2.0 * std::atan(half / eye)));
+  const std::vector<glm::dvec3> window = test::rectangle_corners({0, 0, 3}, {0.5, 0, 0}, {0, 0.5, 0});
+  struct Errors {
+    double mean = 0.0;
+    double rmse = 0.0;
+  };
+  const auto errors_of = [&](int sample_count) {
+    test::Renderer renderer(*device, scene, {size, size},
+                            {.shadow = {.map_size_px = 2048}, .sample_count = sample_count});
+    const test::Picture picture = renderer.picture(camera);
+    Errors errors;
+    double sum = 0.0;
+    for (int y = 0; y < size; y++) {
+      for (int x = 0; x < size; x++) {
+        // The room looks the same from all sides.
+        const glm::dvec3 place(half * (2.0 * x + 1.0 - size) / size, half * (2.0 * y + 1.0 - size) / size, 0.0);
+        const double expected = test::lambert_irradiance(window, place) / std::numbers::pi;
+        const double error = double(picture.pixels[std::size_t(y * size + x)].b) - expected;
+        sum += expected;
+        errors.mean += error;
+        errors.rmse += error * error;
+      }
+    }
+    errors.mean /= sum;
+    errors.rmse = std::sqrt(errors.rmse * size * size) / sum;
+    return errors;
+  };
+  const Errors few = errors_of(16);
+  const Errors many = errors_of(128);
+  EXPECT_NEAR(few.mean, 0.0, 0.1);
+  EXPECT_NEAR(many.mean, 0.0, 0.01);
+  EXPECT_LT(few.rmse, 0.5);
+  EXPECT_LT(many.rmse, 0.1);
 }
 
 /** A mirrored sun that is wider than the lobe of the metal is a disk of about the sun's radiance, or is hidden. */

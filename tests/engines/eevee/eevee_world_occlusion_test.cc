@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The parts of a world's light that arrive at probes, against closed forms.
 #include "eevee_world_occlusion.hh"
+#include "eevee_sobol.hh"
 #include "eevee_test_scene.hh"
 
 #include <gtest/gtest.h>
@@ -104,6 +105,44 @@ TEST_F(WorldOcclusionTest, InAnOpenRoomIsTheFormFactorOfTheOpening)
   });
   EXPECT_GT(count, 100);
   EXPECT_NEAR(difference / count, 0.0, 0.01);
+}
+
+/** Of directions at 1024 places of a Sobol sequence, as a picture of 256 samples draws them. */
+struct Arriving {
+  /** Irradiance / (4 π) from all of them. */
+  double whole = 0.0;
+  /** Irradiance / π on the middle of the floor of add_room(), and the part of the directions that arrive there. */
+  double floor = 0.0;
+  double part = 0.0;
+};
+Arriving arriving(const render_scene::WorldDistribution &directions)
+{
+  constexpr int count = 1024;
+  Arriving sum;
+  for (int i = 0; i < count; i++) {
+    const render_scene::WorldDirection chosen = directions.at(glm::dvec2(sobol_point(std::uint32_t(i), 1)));
+    const glm::dvec3 &v = chosen.to_world;
+    sum.whole += chosen.irradiance.g / (4.0 * std::numbers::pi) / count;
+    if (v.z > 0.0 && 4.0 * std::max(std::abs(v.x), std::abs(v.y)) < 2.0 * v.z) {
+      sum.floor += v.z * chosen.irradiance.g / std::numbers::pi / count;
+      sum.part += 1.0 / count;
+    }
+  }
+  return sum;
+}
+
+TEST_F(WorldOcclusionTest, MoreDirectionsPassThroughAnOpeningAndBringTheSameLight)
+{
+  add_room();
+  WorldOcclusion occlusion;
+  static_cast<void>(traced(occlusion));
+  const Arriving even = arriving(rendered.world()->rest_directions);
+  const Arriving chosen = arriving(*occlusion.directions(rendered.world()).distribution);
+  const double expected = 4.0 * corner_form_factor(2.0, 2.0, 4.0);
+  EXPECT_NEAR(even.floor, expected, 0.02 * expected);
+  EXPECT_NEAR(chosen.floor, expected, 0.01 * expected);
+  EXPECT_NEAR(chosen.whole, 1.0, 0.01);
+  EXPECT_GT(chosen.part, 2.0 * even.part);
 }
 
 TEST_F(WorldOcclusionTest, AClosedRoomHasNone)
