@@ -70,7 +70,7 @@ void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature fe
   }
   std::optional<ProbeKey> probe_key;
   if (has_world_occlusion(settings, scene)) {
-    probe_key = {scene.world_revision(), scene.objects().revision(), scene.passes_revision()};
+    probe_key = {scene.world_revision(), scene.objects().revision(), scene.passes_revision(), scene.content_revision()};
   }
   if (!probe_key) {
     occlusion_.reset();

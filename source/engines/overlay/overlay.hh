@@ -144,7 +144,7 @@ class Overlay {
     glm::dvec3 origin_ws{0.0};
     glm::ivec2 size_px{0};
     scene::Revision scene = 0;
-    std::uint64_t host_content = 0;
+    std::uint64_t content = 0;
     std::uint64_t loss_count = 0;
 
     bool operator==(const ObjectsKey &) const = default;

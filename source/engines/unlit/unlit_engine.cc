@@ -169,7 +169,7 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   gpu::CommandList list;
   gpu::FramebufferStack stack(list);
   DepthKey depth{
-      scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), scene_.host_content_revision(), {}};
+      scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), scene_.content_revision(), {}};
   bool is_depth_drawn = false;
   if (data.is_seen) {
     update_depth_camera(device, data.objects);

@@ -71,7 +71,7 @@ struct DepthKey {
   std::uint64_t objects = 0;
   std::uint64_t passes = 0;
   std::uint64_t losses = 0;
-  std::uint64_t host_content = 0;
+  std::uint64_t content = 0;
   draw::View view;
 
   bool operator==(const DepthKey &) const = default;

@@ -118,6 +118,7 @@ class GlDevice final : public Device {
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
+  void batch_update(std::uint32_t first_vertex, const BatchDesc &values) override;
   void host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch) override;
   void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;

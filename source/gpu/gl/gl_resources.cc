@@ -308,6 +308,18 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
   check(fmt::format("batch '{}'", desc.name));
 }
 
+void GlDevice::batch_update(std::uint32_t first_vertex, const BatchDesc &values)
+{
+  const Calls calls(*this);
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const std::span<const std::byte> bytes = values.bytes(VertexStream(i));
+    if (!bytes.empty()) {
+      glNamedBufferSubData(pool_[i], GLintptr(first_vertex) * GLintptr(vertex_formats()[i].size_bytes),
+                           GLsizeiptr(bytes.size()), bytes.data());
+    }
+  }
+}
+
 void GlDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
   const Calls calls(*this);

@@ -403,6 +403,14 @@ void VulkanDevice::batch_create(const BatchDesc &desc, const BatchRange &range, 
   check(fmt::format("batch '{}'", desc.name));
 }
 
+void VulkanDevice::batch_update(std::uint32_t first_vertex, const BatchDesc &values)
+{
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    write(pools_[i], VkDeviceSize(first_vertex) * vertex_formats()[i].size_bytes, values.bytes(VertexStream(i)));
+  }
+  finish_large_uploads();
+}
+
 void VulkanDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
   const std::string what = fmt::format("batch '{}'", name);
