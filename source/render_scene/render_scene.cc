@@ -7,6 +7,7 @@
 #include "memory_pages.hh"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
@@ -33,6 +34,15 @@ scene::PlacedCamera RenderScene::relative(scene::PlacedCamera camera) const
 {
   camera.world_from_camera[3] -= glm::dvec4(origin_ws_, 0.0);
   return camera;
+}
+
+std::vector<glm::vec4> RenderScene::relative(std::span<const glm::dvec4> planes_ws) const
+{
+  std::vector<glm::vec4> planes;
+  for (const glm::dvec4 &plane : planes_ws) {
+    planes.emplace_back(plane + glm::dvec4(0.0, 0.0, 0.0, glm::dot(glm::dvec3(plane), origin_ws_)));
+  }
+  return planes;
 }
 
 RenderScene::RenderScene(gpu::Device &device, const scene::Scene &scene)

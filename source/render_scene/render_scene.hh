@@ -196,6 +196,8 @@ class RenderScene {
   }
   /** Returns \a camera with its position relative to origin_ws(). */
   [[nodiscard]] scene::PlacedCamera relative(scene::PlacedCamera camera) const;
+  /** Planes of the scene's world space, for draw::View::with_clip_planes. */
+  [[nodiscard]] std::vector<glm::vec4> relative(std::span<const glm::dvec4> planes_ws) const;
 
   /** \see Meshes::get */
   [[nodiscard]] const gpu::Batch &batch(scene::Handle<scene::Mesh> mesh, MeshStreams streams)

@@ -120,6 +120,9 @@ void App::show_view_menu()
   if (ImGui::MenuItem("Show all here", "Alt+H", false, active().is_hiding(document_->scene()))) {
     active().show_all();
   }
+  if (ImGui::MenuItem("Clip to a rectangle", "Alt+B", active().is_clipped())) {
+    active().toggle_clip();
+  }
   if (ImGui::MenuItem("Select through objects", "Alt+Z", active().reach == overlay::Reach::Through)) {
     toggle_reach();
   }

@@ -130,6 +130,9 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
     }
     view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated));
   }
+  if (is_clipped()) {
+    view = view.with_clip_planes(render_scene.relative(clip_planes_ws_));
+  }
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     // Not before, as each picture of a moving view would cost the time of the look.

@@ -65,6 +65,17 @@ class WindowViewport {
   [[nodiscard]] bool is_hiding(const scene::Scene &scene) const;
   /** Undo hide and isolate. */
   void show_all();
+  /**
+   * Show only what is seen now in the rectangle between two pixels, counted as for pick: the four planes through its
+   * sides cut the rest off. \pre draw was called
+   */
+  void clip(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px);
+  /** Undo clip; if nothing is cut off, the next drag of the left button marks the rectangle for it. */
+  void toggle_clip();
+  [[nodiscard]] bool is_clipped() const
+  {
+    return !clip_planes_ws_.empty();
+  }
   /** Whether the node is left out of this viewport. */
   [[nodiscard]] bool is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const;
   /** Start to transform the selected node with the pointer. \pre draw was called \throws as TransformOperation */
@@ -277,6 +288,9 @@ class WindowViewport {
   /** \see hide, isolate. Removed nodes stay in the lists, as undo may restore them. */
   std::vector<scene::Handle<scene::Node>> hidden_;
   std::vector<scene::Handle<scene::Node>> isolated_;
+  /** \see clip */
+  std::vector<glm::dvec4> clip_planes_ws_;
+  bool is_clip_asked_ = false;
 };
 
 }  // namespace gnomon::view

@@ -45,7 +45,7 @@ draw::View view_of_region(const draw::View &view, glm::ivec2 size_px, const gpu:
   crop[1][1] = float(size_px.y) / part.y;
   crop[3][0] = offset.x;
   crop[3][1] = offset.y;
-  return {view.view_from_world(), crop * view.clip_from_view(), {}, view.hidden()};
+  return view.with_matrices(view.view_from_world(), crop * view.clip_from_view());
 }
 
 void Overlay::check_up_to_date() const
@@ -115,6 +115,10 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   gpu::BufferRange full_material_block;
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
   MaterialClass widest = MaterialClass::Plain;
+  const Feature clip = view.clip_planes().empty() ? Feature::None : Feature::ClipPlanes;
+  if (clip != Feature::None && !clip_block_) {
+    clip_block_ = device.create_buffer({"overlay_clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
+  }
   for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
     if (!objects.is_live(index) || !is_drawn(index) || !view.touches(objects.volume(index))) {
       continue;
@@ -133,9 +137,12 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
       if (!view_block_) {
         view_block_ = device.create_buffer({"overlay_view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
       }
-      group = &pass.group(shader(ShaderId::Objects, mask_features(cut_out)));
+      group = &pass.group(shader(ShaderId::Objects, mask_features(cut_out) | clip));
       group->state_enable(state);
       group->bind_uniform("view_block", view_block_);
+      if (clip != Feature::None) {
+        group->bind_uniform("clip_block", clip_block_);
+      }
       group->bind_storage_ref("material_block", &material_block);
       group->bind_storage_ref("full_material_block", &full_material_block);
       render_scene::bind_textures(*group, scene_, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor,
@@ -152,6 +159,9 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   shared::ViewData view_data{};
   view_data.clip_from_world = view.clip_from_world();
   device.update(view_block_, view_data);
+  if (clip != Feature::None) {
+    device.update(clip_block_, draw::clip_data(view, size_px));
+  }
   make(target, size_px);
   const gpu::Rectangle picture{glm::ivec2(0), size_px};
   list.begin_pass("overlay objects", target.framebuffer, {.viewport = picture, .scissor = picture});

@@ -173,6 +173,16 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   bool is_depth_drawn = false;
   if (data.is_seen) {
     update_depth_camera(device, data.objects);
+    if (view.clip_planes().empty()) {
+      data.clip_block = {};
+    }
+    else {
+      if (!data.clip_block) {
+        data.clip_block =
+            device.create_buffer({"unlit_clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
+      }
+      device.update(data.clip_block, draw::clip_data(view, viewport.drawn_size_px()));
+    }
     record(data, device);
     update_view_block(device, data.view_block, view);
     if (depth_camera_) {

@@ -54,6 +54,7 @@ struct PassesKey {
   std::uint64_t settings = 0;
   std::uint64_t losses = 0;
   gpu::ResourceId depth_texture = 0;
+  bool is_clipped = false;
 
   bool operator==(const PassesKey &) const = default;
 };
@@ -106,6 +107,8 @@ struct Data final : draw::EngineViewportData {
   gpu::Texture radiance;
   gpu::Framebuffer framebuffer;
   gpu::Buffer view_block;
+  /** Empty unless the view has clip planes. */
+  gpu::Buffer clip_block;
   gpu::Sampler nearest;
   SceneBlocks blocks;
   std::optional<draw::Pass> surfaces;

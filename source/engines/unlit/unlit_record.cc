@@ -20,7 +20,8 @@ void Engine::record(Data &data, gpu::Device &device)
                       .passes = scene_.passes_revision(),
                       .settings = settings_revision_,
                       .losses = device.loss_count(),
-                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
+                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0,
+                      .is_clipped = bool(data.clip_block)};
   if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
     data.recorded = {};
     record_surfaces(data, device);
@@ -56,7 +57,8 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
     data.widest = std::max(data.widest, surface);
     data.is_mirrored[index] = scene_.objects().is_mirrored(index);
     const bool is_receiver = depth_camera_ && object.receives_shadow;
-    const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
+    const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None) |
+                             (data.clip_block ? Feature::ClipPlanes : Feature::None);
     const State fixed =
         (data.is_mirrored[index] ? State::FrontClockwise : State::None) | render_scene::topology_state(mesh.topology);
     const bool is_double_sided = scene.material_of(mesh).is_double_sided;
@@ -66,6 +68,9 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
       draw::ShadingGroup &group = pass.group(shader(device, ShaderId::Surface, features));
       group.state_enable(state);
       group.bind_uniform("view_block", data.view_block);
+      if (data.clip_block) {
+        group.bind_uniform("clip_block", data.clip_block);
+      }
       data.blocks.bind(group);
       render_scene::bind_textures(group, scene_, surface, textures);
       if (is_receiver) {
