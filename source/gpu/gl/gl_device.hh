@@ -83,6 +83,7 @@ class GlDevice final : public Device {
   /** The names of two timestamp queries: at the begin and at the end. */
   using TimeMarks = std::array<GLuint, 2>;
   struct Timer {
+    std::string name;
     /** Marked, oldest first, and not read yet. The last one may lack its end. */
     std::vector<TimeMarks> pending;
     std::vector<TimeMarks> unused;
@@ -190,6 +191,11 @@ class GlDevice final : public Device {
   const void *const made_in_ = current_context();
   /** Whether the driver reports errors as debug messages. Always false in a host's context. */
   bool is_debug_;
+  /**
+   * Passes are debug groups: in a context of the device, and where a debugger such as RenderDoc asks for them. A host
+   * would get a message for each.
+   */
+  bool has_pass_groups_;
   std::vector<std::string> driver_errors_;
   HostState host_state_;
   /** Errors of OpenGL that the host had pending when the outermost scope began. */

@@ -248,7 +248,7 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
     check_host_framebuffer(name, pass);
   }
   const GlFramebuffer &framebuffer = framebuffer_of(pass);
-  if (is_debug_) {
+  if (has_pass_groups_) {
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(name.size(), 255)), name.data());
   }
   pass_ = &pass;
@@ -339,7 +339,7 @@ void GlDevice::end_pass()
   if (!discarded.empty() && !pass_->host_framebuffer) {
     glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
   }
-  if (is_debug_) {
+  if (has_pass_groups_) {
     glPopDebugGroup();
   }
   pass_ = nullptr;

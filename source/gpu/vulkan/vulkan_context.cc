@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -246,7 +247,10 @@ void VulkanContext::load_instance()
   }
   GNOMON_VULKAN_INSTANCE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
-  // Functions of extensions that only devices with a window enable. Otherwise, they are null.
+  // Functions of extensions that not all instances enable. Otherwise, they are null.
+  set_object_name_ = instance_function<PFN_vkSetDebugUtilsObjectNameEXT>("vkSetDebugUtilsObjectNameEXT");
+  begin_label_ = instance_function<PFN_vkCmdBeginDebugUtilsLabelEXT>("vkCmdBeginDebugUtilsLabelEXT");
+  end_label_ = instance_function<PFN_vkCmdEndDebugUtilsLabelEXT>("vkCmdEndDebugUtilsLabelEXT");
 #define GNOMON_VULKAN_LOAD(NAME) surfaces.NAME = instance_function<PFN_##NAME>(#NAME);
   GNOMON_VULKAN_SURFACE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
@@ -322,6 +326,10 @@ void VulkanContext::create_instance(bool is_debug)
     info.ppEnabledLayerNames = &validation_layer;
     extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   }
+  // RenderDoc and other layers show names. They offer the extension where no driver does.
+  else if (std::getenv("ENABLE_VULKAN_RENDERDOC_CAPTURE") || std::getenv("VK_INSTANCE_LAYERS")) {
+    extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  }
   if (window_) {
     std::uint32_t count = 0;
     const char **names = glfwGetRequiredInstanceExtensions(&count);
@@ -349,7 +357,6 @@ void VulkanContext::create_instance(bool is_debug)
     check(instance_function<PFN_vkCreateDebugUtilsMessengerEXT>("vkCreateDebugUtilsMessengerEXT")(instance_, &messenger,
                                                                                                   nullptr, &messenger_),
           "Vulkan");
-    set_object_name_ = instance_function<PFN_vkSetDebugUtilsObjectNameEXT>("vkSetDebugUtilsObjectNameEXT");
   }
 }
 
@@ -544,6 +551,22 @@ void VulkanContext::label_object(VkObjectType type, std::uint64_t handle, const 
     const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type, handle,
                                              name.c_str()};
     set_object_name_(device, &info);
+  }
+}
+
+void VulkanContext::begin_label(VkCommandBuffer commands, std::string_view name) const
+{
+  if (begin_label_) {
+    const std::string text(name);
+    const VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, text.c_str(), {}};
+    begin_label_(commands, &info);
+  }
+}
+
+void VulkanContext::end_label(VkCommandBuffer commands) const
+{
+  if (end_label_) {
+    end_label_(commands);
   }
 }
 

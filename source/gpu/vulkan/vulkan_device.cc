@@ -182,6 +182,7 @@ void VulkanDevice::time_mark(ResourceId query, bool is_end)
       info.queryCount = 2;
       TimeMarks marks;
       context_->check(context_->vk.vkCreateQueryPool(context_->device, &info, nullptr, &marks.queries), "timer");
+      context_->label(VK_OBJECT_TYPE_QUERY_POOL, marks.queries, timer.name);
       timer.unused.push_back(marks);
     }
     timer.pending.push_back(timer.unused.back());

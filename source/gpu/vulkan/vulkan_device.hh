@@ -94,6 +94,7 @@ class VulkanDevice final : public Device {
     std::uint64_t number = 0;
   };
   struct Timer {
+    std::string name;
     /** Marked, oldest first, and not read yet. The last one may lack its end. */
     std::vector<TimeMarks> pending;
     std::vector<TimeMarks> unused;

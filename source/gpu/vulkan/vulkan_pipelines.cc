@@ -152,6 +152,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
     made.stage = vulkan_stage(stage.stage);
     made.pName = "main";
     context_.check(context_.vk.vkCreateShaderModule(context_.device, &info, nullptr, &made.module), what);
+    context_.label(VK_OBJECT_TYPE_SHADER_MODULE, made.module, name_);
     Constants &set = constants_.emplace_back();
     for (const StageConstant &constant : constants) {
       if (constant.stage == stage.stage) {
@@ -176,6 +177,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
   set.bindingCount = std::uint32_t(bindings.size());
   set.pBindings = bindings.data();
   context_.check(context_.vk.vkCreateDescriptorSetLayout(context_.device, &set, nullptr, &set_layout_), what);
+  context_.label(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, set_layout_, name_);
   // The same range in all programs, so that push constants stay when another program is bound.
   const VkPushConstantRange range{VK_SHADER_STAGE_ALL_GRAPHICS, 0, push_constant_bytes};
   VkPipelineLayoutCreateInfo layout{};
@@ -185,6 +187,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
   layout.pushConstantRangeCount = 1;
   layout.pPushConstantRanges = &range;
   context_.check(context_.vk.vkCreatePipelineLayout(context_.device, &layout, nullptr, &layout_), what);
+  context_.label(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout_, name_);
 }
 
 VkPipeline VulkanProgram::pipeline(const PipelineKey &key)
@@ -277,6 +280,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   VkPipeline pipeline = VK_NULL_HANDLE;
   context_.check(context_.vk.vkCreateGraphicsPipelines(context_.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
                  fmt::format("shader '{}'", name_));
+  context_.label(VK_OBJECT_TYPE_PIPELINE, pipeline, name_);
   return pipeline;
 }
 
