@@ -81,6 +81,9 @@ void main()
 #ifdef USE_FULL_MATERIAL
   radiance *= opacity();
 #endif
+#ifdef USE_XRAY
+  radiance *= 0.5;
+#endif
 #if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   if (is_pixel_cut_out(materials[surface_material].mask_cutoff)) {
     discard;

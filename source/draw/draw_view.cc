@@ -63,13 +63,13 @@ View View::with_matrices(const glm::mat4 &view_from_world, const glm::mat4 &clip
   return view;
 }
 
-shared::ClipData clip_data(const View &view, glm::ivec2 size_px)
+shared::ClipData clip_data(const View &view, glm::ivec2 size_px, glm::ivec2 origin_px)
 {
   // From a fragment's (x, y, z, 1) to its normalized device coordinates.
   glm::dmat4 ndc_from_window(1.0);
   for (int axis = 0; axis < 2; axis++) {
     ndc_from_window[axis][axis] = 2.0 / size_px[axis];
-    ndc_from_window[3][axis] = -1.0;
+    ndc_from_window[3][axis] = -1.0 - 2.0 * origin_px[axis] / size_px[axis];
   }
   const glm::dmat4 clip_from_world = glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world());
   const glm::dmat4 window_from_plane = glm::transpose(glm::inverse(clip_from_world) * ndc_from_window);

@@ -166,8 +166,8 @@ class View {
   std::vector<glm::vec4> clip_planes_;
 };
 
-/** The content of `clip_block` for a picture of \a view whose viewport is \a size_px from the framebuffer's corner. */
-[[nodiscard]] shared::ClipData clip_data(const View &view, glm::ivec2 size_px);
+/** The content of `clip_block` for a pass of \a view whose viewport has this size and lower left corner. */
+[[nodiscard]] shared::ClipData clip_data(const View &view, glm::ivec2 size_px, glm::ivec2 origin_px = {0, 0});
 
 /**
  * Perspective projection with reversed depth: z / w is 1 at the near plane and 0 at the far plane. \a half_width and

@@ -144,7 +144,9 @@ class WindowViewport {
   std::string engine = "eevee";
   /** Show lamps, cameras, the outline of the selected nodes, and the gizmo. */
   bool has_overlays = true;
-  /** Which nodes the pointer selects in an area. */
+  /** Show the edges of triangles instead of the surfaces of unlit. */
+  bool has_wireframe = false;
+  /** Which nodes the pointer selects in an area. With Through, the surfaces of unlit are seen through. */
   overlay::Reach reach = overlay::Reach::Visible;
 
  private:
@@ -158,6 +160,8 @@ class WindowViewport {
     std::string engine;
     glm::ivec2 size_px{0};
     glm::dvec3 origin_ws{0.0};
+    bool has_wireframe = false;
+    overlay::Reach reach = overlay::Reach::Visible;
 
     bool operator==(const Key &) const = default;
   };

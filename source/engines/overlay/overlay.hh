@@ -154,6 +154,8 @@ class Overlay {
   void check_up_to_date() const;
   const gpu::Shader &shader(ShaderId id, Feature features);
   void make(ObjectsTarget &target, glm::ivec2 size_px);
+  /** Write the blocks of passes that draw objects. \a picture: the viewport of the pass. */
+  void write_view(const draw::View &view, const gpu::Rectangle &picture);
   /**
    * Append a pass that draws the objects that \a view sees and \a is_drawn accepts into \a target.
    * \return whether there is anything

@@ -55,6 +55,7 @@ struct PassesKey {
   std::uint64_t losses = 0;
   gpu::ResourceId depth_texture = 0;
   bool is_clipped = false;
+  Display display{};
 
   bool operator==(const PassesKey &) const = default;
 };
@@ -63,6 +64,7 @@ struct PassesKey {
 struct PictureKey {
   std::uint64_t scene = 0;
   std::uint64_t settings = 0;
+  Display display{};
 
   bool operator==(const PictureKey &) const = default;
 };
@@ -93,6 +95,7 @@ struct Data final : draw::EngineViewportData {
     radiance = {};
   }
 
+  Display display{};
   std::vector<draw::ObjectIndex> objects;
   /** True between cache_init and cache_finish. */
   bool is_collecting = false;

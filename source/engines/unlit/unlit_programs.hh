@@ -22,6 +22,8 @@ enum class Feature : std::uint32_t {
   TargetDepth = 1U << 4,
   /** The view has clip planes. */
   ClipPlanes = 1U << 5,
+  /** Display::is_xray. */
+  XRay = 1U << 6,
 };
 
 GNOMON_MASK_OPERATORS(Feature)

@@ -170,6 +170,7 @@ class GlDevice final : public Device {
   [[nodiscard]] const GlFramebuffer &framebuffer_of(const CommandList::PassInfo &pass);
   /** In builds with assertions, \throws Error if the host's framebuffer cannot be drawn into. */
   void check_host_framebuffer(std::string_view pass_name, const CommandList::PassInfo &pass);
+  void set_wireframe(bool is_wireframe);
   void set_state(State state);
   void bind_range(const Command &command);
   void bind_texture(const Command &command);
@@ -196,6 +197,8 @@ class GlDevice final : public Device {
    * would get a message for each.
    */
   bool has_pass_groups_;
+  /** State::Wireframe of the last draws of the pass. */
+  bool is_wireframe_ = false;
   std::vector<std::string> driver_errors_;
   HostState host_state_;
   /** Errors of OpenGL that the host had pending when the outermost scope began. */

@@ -452,6 +452,7 @@ void VulkanContext::create_device()
     *feature.value = VK_TRUE;
   }
   used.core.features.geometryShader = present.core.features.geometryShader;
+  used.core.features.fillModeNonSolid = present.core.features.fillModeNonSolid;
   used.core.features.samplerAnisotropy = present.core.features.samplerAnisotropy;
   used.v12.shaderOutputLayer = present.v12.shaderOutputLayer;
 
@@ -482,6 +483,7 @@ void VulkanContext::create_device()
 void VulkanContext::describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output)
 {
   has_geometry_shader = enabled.geometryShader == VK_TRUE;
+  has_wireframe = enabled.fillModeNonSolid == VK_TRUE;
   has_anisotropy = enabled.samplerAnisotropy == VK_TRUE;
   has_vertex_layer = has_layer_output;
   timestamp_bits = int(queue_families(instance, physical_device)[queue_family].timestampValidBits);

@@ -45,6 +45,7 @@ class VulkanContext {
   VkPhysicalDeviceLimits limits{};
   bool is_software = false;
   bool has_geometry_shader = false;
+  bool has_wireframe = false;
   bool has_vertex_layer = false;
   bool has_anisotropy = false;
   /** Version, names of the device and the driver. */

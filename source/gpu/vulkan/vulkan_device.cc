@@ -35,6 +35,7 @@ Limits limits_of(const VulkanContext &context)
       int(std::min(of.maxVertexOutputComponents, of.maxFragmentInputComponents) / components_of_location);
   limits.has_vertex_layer = context.has_vertex_layer;
   limits.has_geometry_shader = context.has_geometry_shader;
+  limits.has_wireframe = context.has_wireframe;
   limits.has_specialization = true;
   return limits;
 }

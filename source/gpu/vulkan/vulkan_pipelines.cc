@@ -105,7 +105,7 @@ VkFormat vertex_format(int component_count, VertexType type)
 std::uint32_t pipeline_state(State state)
 {
   constexpr State kept = State::WriteColor | State::BlendAdd | State::BlendMultiply | State::BlendOver |
-                         State::DepthClamp | State::DrawLines | State::DrawPoints;
+                         State::DepthClamp | State::DrawLines | State::DrawPoints | State::Wireframe;
   return std::uint32_t(state) & std::uint32_t(kept);
 }
 
@@ -234,6 +234,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   rasterization.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
   rasterization.pNext = &provoking;
   rasterization.depthClampEnable = has(state, State::DepthClamp) ? VK_TRUE : VK_FALSE;
+  rasterization.polygonMode = has(state, State::Wireframe) ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
   rasterization.lineWidth = 1.0F;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
