@@ -327,6 +327,13 @@ void set(App &app, Words words)
   }
 }
 
+void set_time(App &app, Words words)
+{
+  document(app);
+  app.play(false);
+  app.set_time(number(words[0]));
+}
+
 void undo(App &app, Words /*words*/)
 {
   app.undo();
@@ -504,6 +511,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"triangle", "[INDEX]", 0, 1, Need::Nothing, expect_triangle},
     {"inside", "[NODE]", 0, 1, Need::Nothing, expect_inside, true},
     {"set", "PROPERTY VALUE...", 2, 4, Need::Nothing, set},
+    {"time", "SECONDS", 1, 1, Need::Nothing, set_time},
     {"undo", "", 0, 0, Need::Nothing, undo},
     {"redo", "", 0, 0, Need::Nothing, redo},
     {"key", "KEY...", 1, any, Need::Nothing, press_keys},

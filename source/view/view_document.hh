@@ -67,6 +67,12 @@ class Document {
     return history_;
   }
 
+  /**
+   * Set what \a animation animates to its values at \a seconds. Not an undo step, and a saved scene stays saved. Ends a
+   * transform. \throws scene::InvalidEdit
+   */
+  void pose(const scene::Animation &animation, double seconds);
+
   /** Hide the selected nodes if `selected` is shown, otherwise show them, as an edit of the scene. */
   void toggle_visibility();
   /** Add a node and select it. \see view::add */

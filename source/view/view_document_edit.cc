@@ -55,6 +55,14 @@ bool Document::redo()
   return is_redone;
 }
 
+void Document::pose(const scene::Animation &animation, double seconds)
+{
+  end_transform(true);
+  const bool was_saved = is_saved();
+  scene::pose(scene_, animation, seconds);
+  saved_revision_ = was_saved ? scene_.revision() : saved_revision_;
+}
+
 void Document::toggle_visibility()
 {
   const std::vector<scene::Handle<scene::Node>> nodes = selection();

@@ -32,7 +32,8 @@ constexpr std::array named_keys = std::to_array<NamedKey>({{".", GLFW_KEY_PERIOD
                                                            {"escape", GLFW_KEY_ESCAPE},
                                                            {"delete", GLFW_KEY_DELETE},
                                                            {"backspace", GLFW_KEY_BACKSPACE},
-                                                           {"home", GLFW_KEY_HOME}});
+                                                           {"home", GLFW_KEY_HOME},
+                                                           {"space", GLFW_KEY_SPACE}});
 
 /** Keys of the number block, and their equivalents. */
 constexpr std::array block_keys = std::to_array<std::pair<int, int>>({{GLFW_KEY_KP_DECIMAL, GLFW_KEY_PERIOD},
@@ -108,6 +109,7 @@ const std::array bindings = std::to_array<Binding>({
          app.begin_transform(TransformKind::Move);
        }
      }},
+    {{GLFW_KEY_SPACE, 0}, [](App &app) { app.play(!app.is_playing()); }},
     {{GLFW_KEY_F, 0}, [](App &app) { app.begin_fly(); }},
     {{GLFW_KEY_GRAVE_ACCENT, shift}, [](App &app) { app.begin_fly(); }},
 });
