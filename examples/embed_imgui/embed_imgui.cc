@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A viewport as an image of Dear ImGui, with the lamps' intensities beside it.
+// A viewport as an image of Dear ImGui, with the lamps' intensities beside it, and a brush: drag to push surfaces out.
 //   embed_imgui SCENE [PICTURE.ppm]: with a picture's name, the finished viewport is saved, and the program ends.
 #include "../write_ppm.hh"
 
@@ -57,11 +57,30 @@ static void show_lamps(scene::Scene &scene)
   ImGui::End();
 }
 
+/** Move the vertices around the hit outwards. Of a large mesh, no others are uploaded. */
+static void sculpt(scene::Scene &scene, const overlay::Hit &hit)
+{
+  const scene::Mesh &mesh = scene.meshes()[hit.mesh];
+  const glm::vec3 middle(glm::inverse(scene.world_from_node(hit.node)) * glm::dvec4(hit.position_ws, 1.0));
+  const float radius = 0.2F * mesh.bounds.radius();
+  std::vector<std::uint32_t> vertices;
+  std::vector<glm::vec3> positions;
+  for (std::uint32_t i = 0; i < mesh.positions.size(); i++) {
+    const float distance = glm::distance(mesh.positions[i], middle);
+    if (distance < radius) {
+      vertices.push_back(i);
+      positions.push_back(mesh.positions[i] + 0.1F * (radius - distance) * mesh.normals[i]);
+    }
+  }
+  scene.set_vertices(hit.mesh, {.vertices = vertices, .positions = positions});
+}
+
 static void run(GLFWwindow *window, const char *scene_path, const char *picture_path)
 {
   const auto device = gpu::create_gl_device({.context = gpu::ContextKind::Host});
   scene::Scene scene = gltf::import_gltf(scene_path);
   eevee::SceneRenderer renderer(*device, scene, {320, 180}, {.sample_count = 8});
+  overlay::Overlay overlay(renderer.render_scene());
   Canvas canvas;
   while (!glfwWindowShouldClose(window)) {
     glfwPollEvents();
@@ -81,6 +100,14 @@ static void run(GLFWwindow *window, const char *scene_path, const char *picture_
         scene.placed_cameras().front(), {.framebuffer = gpu::HostFramebuffer{canvas.framebuffer, canvas.size_px}});
     // OpenGL's first row is the lowest.
     ImGui::Image(reinterpret_cast<ImTextureID>(std::uintptr_t(canvas.texture)), space, {0, 1}, {1, 0});
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+      const ImVec2 corner = ImGui::GetItemRectMin();
+      const glm::ivec2 pixel_px(ImGui::GetMousePos().x - corner.x,
+                                canvas.size_px.y - 1 - (ImGui::GetMousePos().y - corner.y));
+      if (const auto hit = overlay.pick(renderer.view_of(scene.placed_cameras().front()), canvas.size_px, pixel_px)) {
+        sculpt(scene, *hit);
+      }
+    }
     ImGui::End();
 
     ImGui::Render();

@@ -6,6 +6,9 @@
 #    include "eevee/eevee_surface_function_lib.glsl"
 #  endif
 #endif
+#ifdef USE_CLIP_PLANES
+#  include "draw/draw_clip_lib.glsl"
+#endif
 
 void main()
 {
@@ -16,6 +19,11 @@ void main()
   bool is_open = is_pixel_cut_out(materials[surface_material].mask_cutoff);
 #  endif
   if (is_open) {
+    discard;
+  }
+#endif
+#ifdef USE_CLIP_PLANES
+  if (is_clipped()) {
     discard;
   }
 #endif

@@ -3,6 +3,9 @@
 // Writes what deferred lighting reads of a surface. \see eevee_deferred_lit_frag.glsl
 #include "eevee/eevee_gbuffer_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
+#ifdef USE_CLIP_PLANES
+#  include "draw/draw_clip_lib.glsl"
+#endif
 
 layout(location = 2) flat in uint surface_material;
 
@@ -19,4 +22,9 @@ void main()
 #endif
   texel = vec4(gbuffer_from_direction(surface.normal_ws), gbuffer_from_direction(surface.geometric_normal_ws),
                gbuffer_float(bits), gbuffer_depth(surface.position_ws));
+#ifdef USE_CLIP_PLANES
+  if (is_clipped()) {
+    discard;
+  }
+#endif
 }

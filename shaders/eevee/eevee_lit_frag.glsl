@@ -25,6 +25,9 @@
 #ifdef USE_TRANSMISSION
 #  include "eevee/eevee_transmission_lib.glsl"
 #endif
+#ifdef USE_CLIP_PLANES
+#  include "draw/draw_clip_lib.glsl"
+#endif
 
 layout(location = 0) out vec4 radiance;
 
@@ -92,6 +95,11 @@ void main()
 #if (defined(USE_FULL_MATERIAL) && !defined(USE_SURFACE_FUNCTION)) || defined(USE_BASE_COLOR_TEXTURE)
   // Another surface may have the same depth, so the depth test alone does not reject a masked fragment.
   if (is_pixel_cut_out(materials[surface_material].mask_cutoff)) {
+    discard;
+  }
+#endif
+#ifdef USE_CLIP_PLANES
+  if (is_clipped()) {
     discard;
   }
 #endif

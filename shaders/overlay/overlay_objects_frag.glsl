@@ -4,6 +4,9 @@
 #ifdef USE_ALPHA_MASK
 #  include "eevee/eevee_alpha_lib.glsl"
 #endif
+#ifdef USE_CLIP_PLANES
+#  include "draw/draw_clip_lib.glsl"
+#endif
 
 layout(location = 0) flat in uint surface_object;
 
@@ -15,6 +18,11 @@ void main()
   object_depth = vec2(float(surface_object), gl_FragCoord.z);
 #ifdef USE_ALPHA_MASK
   if (is_cut_out(materials[surface_material].mask_cutoff)) {
+    discard;
+  }
+#endif
+#ifdef USE_CLIP_PLANES
+  if (is_clipped()) {
     discard;
   }
 #endif

@@ -36,6 +36,13 @@ struct ViewData {
 };
 SHARED_ASSERT_SIZE(ViewData, 160)
 
+/** Content of `clip_block`: draw::View::clip_planes for the coordinates of fragments. */
+struct ClipData {
+  /** A fragment is shown if the product with vec4(gl_FragCoord.xyz, 1) is at least 0 for all planes. */
+  vec4 planes[6];
+};
+SHARED_ASSERT_SIZE(ClipData, 96)
+
 SHARED_END
 
 #endif

@@ -56,6 +56,9 @@ float opacity()
   return passes_light ? full_materials[surface_material].opacity : surface_opacity();
 }
 #endif
+#ifdef USE_CLIP_PLANES
+#  include "draw/draw_clip_lib.glsl"
+#endif
 
 layout(location = 0) out vec4 radiance;
 
@@ -78,8 +81,16 @@ void main()
 #ifdef USE_FULL_MATERIAL
   radiance *= opacity();
 #endif
+#ifdef USE_XRAY
+  radiance *= 0.5;
+#endif
 #if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   if (is_pixel_cut_out(materials[surface_material].mask_cutoff)) {
+    discard;
+  }
+#endif
+#ifdef USE_CLIP_PLANES
+  if (is_clipped()) {
     discard;
   }
 #endif

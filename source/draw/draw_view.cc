@@ -3,6 +3,8 @@
 
 #include "gpu_error.hh"
 
+#include "draw_view_shared.h"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -38,12 +40,54 @@ View View::with_hidden(ObjectSet hidden) const
   return view;
 }
 
-View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens, ObjectSet hidden)
+View View::with_clip_planes(std::vector<glm::vec4> planes) const
+{
+  if (planes.size() > clip_plane_max) {
+    throw gpu::Error("view: {} clip planes are more than the {} that it can have", planes.size(), clip_plane_max);
+  }
+  for (std::size_t i = 0; i < planes.size(); i++) {
+    if (!std::isfinite(planes[i].x + planes[i].y + planes[i].z + planes[i].w)) {
+      throw gpu::Error("view: clip plane {} is not finite", i);
+    }
+  }
+  View view = *this;
+  view.clip_planes_ = std::move(planes);
+  return view;
+}
+
+View View::with_matrices(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens) const
+{
+  View view(view_from_world, clip_from_view, lens);
+  view.hidden_ = hidden_;
+  view.clip_planes_ = clip_planes_;
+  return view;
+}
+
+shared::ClipData clip_data(const View &view, glm::ivec2 size_px, glm::ivec2 origin_px)
+{
+  // From a fragment's (x, y, z, 1) to its normalized device coordinates.
+  glm::dmat4 ndc_from_window(1.0);
+  for (int axis = 0; axis < 2; axis++) {
+    ndc_from_window[axis][axis] = 2.0 / size_px[axis];
+    ndc_from_window[3][axis] = -1.0 - 2.0 * origin_px[axis] / size_px[axis];
+  }
+  const glm::dmat4 clip_from_world = glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world());
+  const glm::dmat4 window_from_plane = glm::transpose(glm::inverse(clip_from_world) * ndc_from_window);
+  // Other planes are (0, 0, 0, 0), behind which nothing is.
+  shared::ClipData data{};
+  for (std::size_t i = 0; i < view.clip_planes().size(); i++) {
+    const glm::dvec4 plane = window_from_plane * glm::dvec4(view.clip_planes()[i]);
+    const double most = std::max({std::abs(plane.x), std::abs(plane.y), std::abs(plane.z), std::abs(plane.w)});
+    data.planes[i] = most > 0.0 && std::isfinite(most) ? glm::vec4(plane / most) : glm::vec4(0.0F);
+  }
+  return data;
+}
+
+View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens)
     : view_from_world_(view_from_world),
       clip_from_view_(clip_from_view),
       clip_from_world_(clip_from_view * view_from_world),
-      lens_(lens),
-      hidden_(std::move(hidden))
+      lens_(lens)
 {
   const glm::mat4 rows = glm::transpose(clip_from_world_);
   // Gribb and Hartmann 2001, for reversed z in [0, w]: a point is inside the near plane if z <= w, and inside the far

@@ -2,14 +2,20 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <vector>
+
+namespace gnomon::shared {
+struct ClipData;
+}
 
 namespace gnomon::draw {
 
@@ -75,15 +81,18 @@ class ObjectSet {
   std::shared_ptr<const std::vector<std::uint8_t>> flags_;
 };
 
-/** Position, direction, projection and lens from which a pass is drawn, and the objects that are left out. */
+/** Position, direction, projection and lens from which a pass is drawn, and what is left out. */
 class View {
  public:
+  /** The most planes of with_clip_planes(). */
+  static constexpr std::size_t clip_plane_max = 6;
+
   View() : View(glm::mat4(1.0F), glm::mat4(1.0F)) {}
   /**
    * View space looks along -Z. \a clip_from_view maps the near plane to z = w and the far plane to z = 0 (reversed
-   * depth). \a hidden: the set hidden(). \pre both matrices are finite
+   * depth). \pre both matrices are finite
    */
-  View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens = {}, ObjectSet hidden = {});
+  View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens = {});
 
   [[nodiscard]] const glm::mat4 &view_from_world() const
   {
@@ -107,6 +116,20 @@ class View {
   }
   /** The same view, which leaves out \a hidden instead of its own set. */
   [[nodiscard]] View with_hidden(ObjectSet hidden) const;
+  /**
+   * Pictures of this view show the parts of surfaces on one side of each of these planes: the points p with
+   * dot(plane, (p, 1)) >= 0. What is cut open shows the backs of two-sided materials. Light and shadows of a picture
+   * are those of the whole scene. World space, metres, as view_from_world().
+   */
+  [[nodiscard]] const std::vector<glm::vec4> &clip_planes() const
+  {
+    return clip_planes_;
+  }
+  /** The same view with other clip_planes(). \throws gpu::Error if they are too many, or one is not finite. */
+  [[nodiscard]] View with_clip_planes(std::vector<glm::vec4> planes) const;
+  /** A view from these matrices that leaves out the same as this one. */
+  [[nodiscard]] View with_matrices(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view,
+                                   const Lens &lens = {}) const;
   [[nodiscard]] bool is_perspective() const
   {
     return clip_from_view_[3][3] == 0.0F;
@@ -140,7 +163,11 @@ class View {
   Lens lens_;
   std::array<glm::vec4, 6> frustum_planes_ws_;
   ObjectSet hidden_;
+  std::vector<glm::vec4> clip_planes_;
 };
+
+/** The content of `clip_block` for a pass of \a view whose viewport has this size and lower left corner. */
+[[nodiscard]] shared::ClipData clip_data(const View &view, glm::ivec2 size_px, glm::ivec2 origin_px = {0, 0});
 
 /**
  * Perspective projection with reversed depth: z / w is 1 at the near plane and 0 at the far plane. \a half_width and

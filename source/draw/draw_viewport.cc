@@ -84,7 +84,7 @@ View Viewport::drawn_view(const View &view) const
     clip_from_view[column][0] *= scale.x;
     clip_from_view[column][1] *= scale.y;
   }
-  return {view.view_from_world(), clip_from_view, view.lens(), view.hidden()};
+  return view.with_matrices(view.view_from_world(), clip_from_view, view.lens());
 }
 
 const gpu::Texture &Viewport::depth_texture()

@@ -110,6 +110,12 @@ class Device {
   static constexpr std::size_t unused_shader_max = 64;
   [[nodiscard]] TimerQuery create_timer_query(std::string name);
 
+  /**
+   * Write the streams of \a values that are not empty to the vertices of \a batch from \a first_vertex on. The batch
+   * must have been created with these streams. `values.indices` has no effect. Lists submitted later read the new
+   * values; lists submitted before do not. \pre not a batch of the host
+   */
+  void update(const Batch &batch, std::uint32_t first_vertex, const BatchDesc &values);
   /** Write \a bytes to \a buffer. Lists submitted later read the new content; lists submitted before do not. */
   void update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes);
   template <typename T>
@@ -301,6 +307,8 @@ class Device {
    */
   virtual void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                             std::uint32_t index_capacity) = 0;
+  /** \a first_vertex: in the shared buffers. */
+  virtual void batch_update(std::uint32_t first_vertex, const BatchDesc &values) = 0;
   virtual void host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch) = 0;
   /**
    * \a compiled: the backend's own compiled form from an earlier run, or empty. A backend that cannot use it compiles
@@ -371,6 +379,7 @@ class Device {
   }
   /** Destroys shared programs without users until at most \a count_max of them exist. */
   void trim_shared_shaders(std::size_t count_max);
+  [[nodiscard]] BatchDesc kept(const BatchDesc &desc);
   BatchRange allocate_range(const BatchDesc &desc);
   void free_range(const BatchRange &range);
   void count_upload(ResourceKind kind, ResourceId id, std::size_t bytes);

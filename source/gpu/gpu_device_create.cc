@@ -181,6 +181,39 @@ Buffer Device::create_buffer(const BufferDesc &desc)
           desc};
 }
 
+BatchDesc Device::kept(const BatchDesc &desc)
+{
+  return {.name = desc.name,
+          .positions = kept(desc.positions),
+          .normals = kept(desc.normals),
+          .indices = kept(desc.indices),
+          .uvs = kept(desc.uvs),
+          .second_uvs = kept(desc.second_uvs),
+          .tangents = kept(desc.tangents),
+          .colors = kept(desc.colors)};
+}
+
+static void check_streams([[maybe_unused]] const BatchDesc &desc)
+{
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    [[maybe_unused]] const std::size_t stream_bytes = desc.bytes(VertexStream(i)).size();
+    GNOMON_ASSERT(stream_bytes == 0 || stream_bytes == desc.positions.size() * vertex_formats()[i].size_bytes,
+                  "batch '{}': {} bytes of attribute {} for {} positions", desc.name, stream_bytes,
+                  vertex_formats()[i].attribute, desc.positions.size());
+  }
+}
+
+void Device::update(const Batch &batch, std::uint32_t first_vertex, const BatchDesc &values)
+{
+  check_streams(values);
+  const BatchRange &range = batch.range();
+  GNOMON_ASSERT(batch && range.host_batch == 0 && first_vertex + values.positions.size() <= range.vertex_count,
+                "batch '{}': {} vertices from {} on do not fit into {}", name_of(ResourceKind::Batch, batch.id()),
+                values.positions.size(), first_vertex, range.vertex_count);
+  perform({Operation::UpdateBatch{batch.id(), std::uint32_t(range.base_vertex) + first_vertex, kept(values)}});
+  count_upload(ResourceKind::Batch, batch.id(), size_bytes(values));
+}
+
 Batch Device::create_batch(const BatchDesc &desc)
 {
   constexpr std::size_t count_max = std::size_t(1) << 28U;
@@ -188,12 +221,7 @@ Batch Device::create_batch(const BatchDesc &desc)
     throw Error("batch '{}': {} vertices and {} indices, but a batch can have at most {} of each", desc.name,
                 desc.positions.size(), desc.indices.size(), count_max);
   }
-  for (std::size_t i = 0; i < vertex_stream_count; i++) {
-    const std::size_t stream_bytes = desc.bytes(VertexStream(i)).size();
-    GNOMON_ASSERT(stream_bytes == 0 || stream_bytes == desc.positions.size() * vertex_formats()[i].size_bytes,
-                  "batch '{}': {} bytes of attribute {} for {} positions", desc.name, stream_bytes,
-                  vertex_formats()[i].attribute, desc.positions.size());
-  }
+  check_streams(desc);
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
   const std::uint32_t vertex_capacity = vertices_->capacity();
@@ -201,15 +229,7 @@ Batch Device::create_batch(const BatchDesc &desc)
   const BatchRange range = allocate_range(desc);
   try {
     Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes(desc), [&](ResourceId id) {
-      const BatchDesc data{.name = desc.name,
-                           .positions = kept(desc.positions),
-                           .normals = kept(desc.normals),
-                           .indices = kept(desc.indices),
-                           .uvs = kept(desc.uvs),
-                           .second_uvs = kept(desc.second_uvs),
-                           .tangents = kept(desc.tangents),
-                           .colors = kept(desc.colors)};
-      return Operation::CreateBatch{id, data, range, vertices_->capacity(), indices_->capacity()};
+      return Operation::CreateBatch{id, kept(desc), range, vertices_->capacity(), indices_->capacity()};
     });
     count_upload(ResourceKind::Batch, resource.id(), size_bytes(desc));
     return {std::move(resource), range};

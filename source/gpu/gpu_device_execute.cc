@@ -108,6 +108,10 @@ void Device::execute(const Operation &operation, Packet *packet)
             batch_create(call.desc, call.range, call.vertex_capacity, call.index_capacity);
             counters_.upload_bytes += size_bytes(call.desc);
           },
+          [&](const Operation::UpdateBatch &call) {
+            batch_update(call.first_vertex, call.values);
+            counters_.upload_bytes += size_bytes(call.values);
+          },
           [&](const Operation::CreateHostBatch &call) { host_batch_create(call.id, call.name, call.batch); },
           [&](const Operation::CreateShader &call) { execute(call, packet); },
           [&](const Operation::CreateTimerQuery &call) { timer_query_create(call.id, call.name); },

@@ -47,6 +47,8 @@ struct Limits {
   bool has_vertex_layer = true;
   /** Whether programs may have a geometry stage. OpenGL has it. */
   bool has_geometry_shader = true;
+  /** Whether State::Wireframe can be used. OpenGL has it; Vulkan's fillModeNonSolid. */
+  bool has_wireframe = true;
   /** Whether specialisation constants are set after compilation; otherwise, their values become part of the text. */
   bool has_specialization = false;
 };

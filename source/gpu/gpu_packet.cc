@@ -127,6 +127,7 @@ std::string Packet::serialize(const Device &device) const
     std::visit(
         Overloaded{
             [&](const Operation::CreateBatch &call) { line("create", ResourceKind::Batch, call.id); },
+            [&](const Operation::UpdateBatch &call) { line("update", ResourceKind::Batch, call.id); },
             [&](const Operation::Destroy &call) { text += fmt::format("destroy {}\n", to_string(call.resource.kind)); },
             [&](const Operation::UpdateBuffer &call) {
               text += fmt::format("update {} {} bytes at {}\n", device.name_of(ResourceKind::Buffer, call.id),

@@ -125,6 +125,12 @@ struct Operation {
     std::uint32_t vertex_capacity;
     std::uint32_t index_capacity;
   };
+  struct UpdateBatch {
+    ResourceId id;
+    /** In the shared buffers. */
+    std::uint32_t first_vertex;
+    BatchDesc values;
+  };
   struct CreateHostBatch {
     ResourceId id;
     std::string name;
@@ -187,8 +193,8 @@ struct Operation {
     std::size_t list;
   };
   std::variant<CreateTexture, CreateSampler, CreateFramebuffer, CreateHostFramebuffer, TakeImage, CreateBuffer,
-               CreateBatch, CreateHostBatch, CreateShader, CreateTimerQuery, Destroy, UpdateBuffer, UploadTexture,
-               GenerateMipmaps, CopyLayers, MarkTime, ReadBack, SubmitList>
+               CreateBatch, UpdateBatch, CreateHostBatch, CreateShader, CreateTimerQuery, Destroy, UpdateBuffer,
+               UploadTexture, GenerateMipmaps, CopyLayers, MarkTime, ReadBack, SubmitList>
       call;
 
   /** The resource that the call creates. Empty for batches that are ranges of shared buffers. */

@@ -55,6 +55,8 @@ enum class State : std::uint32_t {
   DrawPoints = 1U << 13,
   /** Depth test: passes if the depth is further than the stored depth (reversed depth: <). */
   DepthFurther = 1U << 14,
+  /** Triangles are drawn as their edges, one pixel wide. \pre Limits::has_wireframe */
+  Wireframe = 1U << 15,
 };
 
 GNOMON_MASK_OPERATORS(State)

@@ -38,6 +38,7 @@ class EditedScene {
     for (int i = 0; i < edited_object_count; i++) {
       objects.push_back(add_object(scene, meshes[std::size_t(i % 4)], box_at(2.0 * (i % 100), 2.0 * (i / 100))));
     }
+    grid = add_grid(materials[0]);
     for (int i = 0; i < edited_lamp_count; i++) {
       lamps.push_back(add_short_lamp(lamp_place(i)));
     }
@@ -107,6 +108,7 @@ class EditedScene {
   scene::Scene scene;
   std::vector<scene::Handle<scene::Material>> materials;
   std::vector<scene::Handle<scene::Mesh>> meshes;
+  scene::Handle<scene::Mesh> grid;
   std::vector<scene::Handle<scene::Node>> objects;
   std::vector<scene::Handle<scene::Lamp>> lamps;
   std::vector<scene::Handle<scene::Node>> lamp_nodes;
@@ -116,6 +118,25 @@ class EditedScene {
   std::optional<eevee::SceneRenderer> renderer;
 
  private:
+  /** Adds a square of 64 by 64 vertices, far from lamps. */
+  scene::Handle<scene::Mesh> add_grid(scene::Handle<scene::Material> material)
+  {
+    constexpr std::uint32_t edge = 64;
+    scene::Mesh mesh{.name = "grid", .material = material};
+    for (std::uint32_t y = 0; y < edge; y++) {
+      for (std::uint32_t x = 0; x < edge; x++) {
+        mesh.positions.emplace_back(18.0F + 0.02F * float(x), 18.0F + 0.02F * float(y), 2.0F);
+        if (x > 0 && y > 0) {
+          const std::uint32_t i = y * edge + x;
+          mesh.indices.insert(mesh.indices.end(), {i - edge - 1, i - edge, i, i - edge - 1, i, i - 1});
+        }
+      }
+    }
+    mesh.normals.assign(mesh.positions.size(), {0, 0, 1});
+    const auto added = scene.add(std::move(mesh));
+    add_object(scene, added, glm::dmat4(1.0));
+    return added;
+  }
   /** Gives \a material a texture of one texel. \return its image */
   scene::Handle<scene::Image> add_textured(scene::Handle<scene::Material> material, scene::AlphaMode alpha_mode)
   {
@@ -167,6 +188,12 @@ std::vector<EditCost> edit_costs(gpu::Device &device)
   });
   add("set a matrix that is set already",
       [&] { scene.set_transform(s.objects[7], scene.world_from_node(s.objects[7])); });
+
+  add("move one of 4096 vertices of a mesh", [&] {
+    constexpr std::uint32_t vertex = 2000;
+    const glm::vec3 moved = scene.meshes()[s.grid].positions[vertex] + glm::vec3(0, 0, 0.01F);
+    scene.set_vertices(s.grid, {.vertices = std::span(&vertex, 1), .positions = std::span(&moved, 1)});
+  });
 
   const auto edit_material = [&](int index, auto &&change) { scene.edit(s.materials[std::size_t(index)], change); };
   add("change a material's colour", [&] {

@@ -4,6 +4,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace gnomon::render_scene {
@@ -11,7 +12,7 @@ namespace gnomon::render_scene {
 namespace {
 
 template <typename Packed>
-std::vector<Packed> packed(const std::vector<glm::vec4> &values, std::size_t count, Packed absent,
+std::vector<Packed> packed(std::span<const glm::vec4> values, std::size_t count, Packed absent,
                            Packed (*pack)(const glm::vec4 &))
 {
   std::vector<Packed> result(values.empty() ? count : 0, absent);
@@ -19,27 +20,42 @@ std::vector<Packed> packed(const std::vector<glm::vec4> &values, std::size_t cou
   return result;
 }
 
-gpu::Batch make_batch(gpu::Device &device, const scene::Mesh &mesh, MeshStreams streams)
+/** Call \a use with the streams of \a range, as they are on the device, without indices. */
+template <typename Use>
+void use_streams(const scene::Mesh &mesh, MeshStreams streams, scene::VertexRange range, Use &&use)
 {
-  gpu::BatchDesc desc{mesh.name, mesh.positions, mesh.normals, mesh.indices};
+  const auto part = [&](const auto &stream) {
+    return std::span(stream).subspan(stream.empty() ? 0 : range.first, stream.empty() ? 0 : range.count);
+  };
+  gpu::BatchDesc desc{mesh.name, part(mesh.positions), part(mesh.normals), {}};
   if (streams >= MeshStreams::Uvs) {
-    desc.uvs = mesh.uvs;
+    desc.uvs = part(mesh.uvs);
   }
   if (streams < MeshStreams::All) {
-    return device.create_batch(desc);
+    use(desc);
+    return;
   }
-  const std::size_t count = mesh.positions.size();
-  const std::vector<glm::vec2> zeros(mesh.uvs.empty() || mesh.second_uvs.empty() ? count : 0, glm::vec2(0.0F));
-  desc.uvs = mesh.uvs.empty() ? zeros : mesh.uvs;
-  desc.second_uvs = mesh.second_uvs.empty() ? zeros : mesh.second_uvs;
-  const auto tangents = packed<glm::i16vec4>(mesh.tangents, count, glm::i16vec4(0), [](const glm::vec4 &tangent) {
-    return glm::packSnorm<glm::int16>(tangent);
-  });
-  const auto colors = packed<glm::u16vec4>(mesh.colors, count, glm::u16vec4(65535),
+  const std::vector<glm::vec2> zeros(mesh.uvs.empty() || mesh.second_uvs.empty() ? range.count : 0, glm::vec2(0.0F));
+  desc.uvs = mesh.uvs.empty() ? zeros : part(mesh.uvs);
+  desc.second_uvs = mesh.second_uvs.empty() ? zeros : part(mesh.second_uvs);
+  const auto tangents =
+      packed<glm::i16vec4>(part(mesh.tangents), range.count, glm::i16vec4(0),
+                           [](const glm::vec4 &tangent) { return glm::packSnorm<glm::int16>(tangent); });
+  const auto colors = packed<glm::u16vec4>(part(mesh.colors), range.count, glm::u16vec4(65535),
                                            [](const glm::vec4 &color) { return glm::packUnorm<glm::uint16>(color); });
   desc.tangents = tangents;
   desc.colors = colors;
-  return device.create_batch(desc);
+  use(desc);
+}
+
+gpu::Batch make_batch(gpu::Device &device, const scene::Mesh &mesh, MeshStreams streams)
+{
+  gpu::Batch batch;
+  use_streams(mesh, streams, {0, std::uint32_t(mesh.positions.size())}, [&](gpu::BatchDesc &desc) {
+    desc.indices = mesh.indices;
+    batch = device.create_batch(desc);
+  });
+  return batch;
 }
 
 gpu::Batch make_host_batch(gpu::Device &device, const scene::Mesh &mesh, const gpu::HostBatch &batch)
@@ -63,22 +79,55 @@ gpu::Batch make_host_batch(gpu::Device &device, const scene::Mesh &mesh, const g
 
 }  // namespace
 
-const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes,
-                              scene::Handle<scene::Mesh> handle, MeshStreams streams)
+void Meshes::write_changes(gpu::Device &device, const scene::Scene &scene, Entry &entry)
 {
+  const scene::Revision shape = scene.meshes().revision(entry.handle, scene::Mesh::Aspect::Shape);
+  if (entry.shape == shape) {
+    return;
+  }
+  for (const scene::VertexRange range : scene.changed_vertices(entry.handle, entry.shape)) {
+    use_streams(scene.meshes()[entry.handle], entry.streams, range,
+                [&](const gpu::BatchDesc &values) { device.update(entry.batch, range.first, values); });
+  }
+  entry.shape = shape;
+}
+
+void Meshes::upload(gpu::Device &device, const scene::Scene &scene)
+{
+  using enum scene::Mesh::Aspect;
+  const scene::Pool<scene::Mesh> &meshes = scene.meshes();
+  const bool is_lost = std::exchange(loss_count_, device.loss_count()) != device.loss_count();
+  if (!is_lost && uploaded_shape_ == meshes.latest(Shape)) {
+    return;
+  }
+  for (Entry &entry : entries_) {
+    if (entry.batch && entry.host_resource == 0 && meshes.is_live(entry.handle) &&
+        entry.layout == meshes.revision(entry.handle, Layout)) {
+      entry.shape = is_lost ? 0 : entry.shape;
+      write_changes(device, scene, entry);
+    }
+  }
+  uploaded_shape_ = meshes.latest(Shape);
+}
+
+const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Mesh> handle,
+                              MeshStreams streams)
+{
+  const scene::Pool<scene::Mesh> &meshes = scene.meshes();
   const scene::Mesh &mesh = meshes[handle];
   const scene::Revision shape = meshes.revision(handle, scene::Mesh::Aspect::Shape);
+  const scene::Revision layout = meshes.revision(handle, scene::Mesh::Aspect::Layout);
   if (entries_.size() <= handle.index) {
     entries_.resize(meshes.index_end());
   }
   Entry &entry = entries_[handle.index];
-  const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape;
+  const bool is_same = entry.batch && entry.handle == handle && entry.layout == layout;
   if (mesh.host_shape) {
     const gpu::HostBatch *host = host_batches_.find(handle);
     GNOMON_ASSERT(host, "mesh '{}': the host has named no buffers of it", mesh.name);
     const std::uint64_t resource = host_batches_.resource_revision(handle);
     if (!is_same || entry.host_resource != resource) {
-      entry = {make_host_batch(device, mesh, *host), handle, shape, resource, MeshStreams::All};
+      entry = {make_host_batch(device, mesh, *host), handle, shape, layout, resource, MeshStreams::All};
     }
   }
   else if (!is_same || streams > entry.streams) {
@@ -88,7 +137,10 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh
     if (is_same) {
       outgrown_.push_back(std::move(entry.batch));
     }
-    entry = {std::move(batch), handle, shape, 0, all};
+    entry = {std::move(batch), handle, shape, layout, 0, all};
+  }
+  else {
+    write_changes(device, scene, entry);
   }
   return entry.batch;
 }

@@ -20,8 +20,9 @@ enum class MeshStreams : std::uint8_t {
 };
 
 /**
- * The meshes of a scene on one device. A mesh is uploaded when it is first drawn, and again after its shape has changed
- * or when a pass reads more of its streams. Shapes in buffers of the host are drawn from these.
+ * The meshes of a scene on one device. A mesh is uploaded when it is first drawn, and again after its layout has
+ * changed or when a pass reads more of its streams. Of other changes of its shape, upload() writes the changed
+ * vertices. Shapes in buffers of the host are drawn from these.
  */
 class Meshes {
  public:
@@ -32,8 +33,10 @@ class Meshes {
    * batch of the host does not have the streams or the elements of the mesh.
    * \throws scene::StaleHandle
    */
-  const gpu::Batch &get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes, scene::Handle<scene::Mesh> handle,
+  const gpu::Batch &get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Mesh> handle,
                         MeshStreams streams);
+  /** Write the changed vertices of the meshes on the device whose layout is the same. */
+  void upload(gpu::Device &device, const scene::Scene &scene);
   /** The batch of a mesh; nullptr if the mesh is not on the device. */
   [[nodiscard]] const gpu::Batch *find(scene::Handle<scene::Mesh> handle) const;
   /** \see RenderScene::set_host_batch */
@@ -66,12 +69,19 @@ class Meshes {
     gpu::Batch batch;
     scene::Handle<scene::Mesh> handle;
     scene::Revision shape = 0;
+    scene::Revision layout = 0;
     /** The number in `host_batches_`; 0: the mesh was uploaded. */
     std::uint64_t host_resource = 0;
     MeshStreams streams = MeshStreams::Shape;
   };
+  static void write_changes(gpu::Device &device, const scene::Scene &scene, Entry &entry);
+
   /** Indexed by Handle::index. */
   std::vector<Entry> entries_;
+  /** The latest shape at the last upload(). */
+  scene::Revision uploaded_shape_ = 0;
+  /** gpu::Device::loss_count at the last upload(). */
+  std::uint64_t loss_count_ = 0;
   /** \see free_outgrown */
   std::vector<gpu::Batch> outgrown_;
   HostResources<scene::Mesh, gpu::HostBatch> host_batches_;

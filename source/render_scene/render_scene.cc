@@ -7,6 +7,7 @@
 #include "memory_pages.hh"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
@@ -33,6 +34,15 @@ scene::PlacedCamera RenderScene::relative(scene::PlacedCamera camera) const
 {
   camera.world_from_camera[3] -= glm::dvec4(origin_ws_, 0.0);
   return camera;
+}
+
+std::vector<glm::vec4> RenderScene::relative(std::span<const glm::dvec4> planes_ws) const
+{
+  std::vector<glm::vec4> planes;
+  for (const glm::dvec4 &plane : planes_ws) {
+    planes.emplace_back(plane + glm::dvec4(0.0, 0.0, 0.0, glm::dot(glm::dvec3(plane), origin_ws_)));
+  }
+  return planes;
 }
 
 RenderScene::RenderScene(gpu::Device &device, const scene::Scene &scene)
@@ -145,12 +155,18 @@ void RenderScene::update_objects()
     memory::prefer_large_pages(render_objects_.data(), render_objects_.capacity() * sizeof(RenderObject));
   }
   node_objects_.resize(nodes.index_end());
-  // Update every node if a mesh or material was edited, because any node may use it. Such edits are rare.
-  const bool is_anew = is_origin_changed_ || host_batch_changes_.resources || std::max(meshes, materials) > seen_;
+  // Update every node if a material was edited, because any node may use it. Such edits are rare.
+  const bool is_anew = is_origin_changed_ || host_batch_changes_.resources || materials > seen_;
+  const scene::Pool<scene::Mesh> &pool = scene_.meshes();
+  const auto is_edited = [&](scene::Handle<scene::Mesh> mesh) {
+    return !pool.is_live(mesh) || pool.revision(mesh, scene::Mesh::Aspect::Shape) > seen_ ||
+           pool.revision(mesh, scene::Mesh::Aspect::Material) > seen_;
+  };
   for (const auto &[handle, node] : nodes) {
-    if (is_anew || nodes.revision(handle, Transform) > seen_ || nodes.revision(handle, Content) > seen_ ||
+    const bool is_node_anew = is_anew || (meshes > seen_ && std::ranges::any_of(node.meshes, is_edited));
+    if (is_node_anew || nodes.revision(handle, Transform) > seen_ || nodes.revision(handle, Content) > seen_ ||
         nodes.revision(handle, Visibility) > seen_ || nodes.revision(handle, Shadow) > seen_) {
-      update_node(handle, node, is_anew);
+      update_node(handle, node, is_node_anew);
     }
   }
   bounds_ = {};
@@ -259,7 +275,7 @@ void RenderScene::update_revisions()
   using Material = scene::Material::Aspect;
   const scene::Pool<scene::Material> &materials = scene_.materials();
   const scene::Revision passes = std::max(
-      {scene_.meshes().latest(scene::Mesh::Aspect::Shape), scene_.meshes().latest(scene::Mesh::Aspect::Material),
+      {scene_.meshes().latest(scene::Mesh::Aspect::Layout), scene_.meshes().latest(scene::Mesh::Aspect::Material),
        materials.latest(Material::Coverage), materials.latest(Material::Textures), scene_.textures().latest(),
        scene_.images().latest(scene::Image::Aspect::Content),
        scene_.surface_functions().latest(scene::SurfaceFunction::Aspect::Text)});
@@ -267,13 +283,16 @@ void RenderScene::update_revisions()
       meshes_.free_outgrown() || host_batch_changes_.resources || host_texture_changes_.resources;
   const bool are_flags_changed = std::exchange(are_flags_changed_, false);
   passes_revision_ += passes > seen_ || are_resources_new || are_flags_changed ? 1 : 0;
-  host_content_revision_ += host_batch_changes_.content || host_texture_changes_.content ? 1 : 0;
+  const bool is_content_new = host_batch_changes_.content || host_texture_changes_.content ||
+                              scene_.meshes().latest(scene::Mesh::Aspect::Shape) > seen_;
+  content_revision_ += is_content_new ? 1 : 0;
   materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
 }
 
 void RenderScene::upload(MaterialClass widest)
 {
   objects_.upload(device_);
+  meshes_.upload(device_, scene_);
   materials_->upload(device_, widest);
 }
 

@@ -154,7 +154,7 @@ class RenderScene {
   /** Increases when update() finds a change that a picture may show: one of those of the following revisions. */
   [[nodiscard]] std::uint64_t revision() const
   {
-    return objects_.revision() + lamps_revision_ + passes_revision_ + materials_revision_ + host_content_revision_;
+    return objects_.revision() + lamps_revision_ + passes_revision_ + materials_revision_ + content_revision_;
   }
   /** Increases when update() finds that a lamp or the world has changed. */
   [[nodiscard]] std::uint64_t lamps_revision() const
@@ -162,8 +162,8 @@ class RenderScene {
     return lamps_revision_;
   }
   /**
-   * Increases when update() finds a change after which passes must be built again: the shape or material of a mesh, the
-   * coverage or textures of a material, an image, a surface function, the settings of a texture, whether an object
+   * Increases when update() finds a change after which passes must be built again: the layout or material of a mesh,
+   * the coverage or textures of a material, an image, a surface function, the settings of a texture, whether an object
    * casts or receives shadows, vertex streams on the device, or names, layouts and sizes of the host's resources.
    * Other changes of objects: \see draw::ObjectBuffer::revision
    */
@@ -171,10 +171,13 @@ class RenderScene {
   {
     return passes_revision_;
   }
-  /** Increases when update() finds that resources of the host may have other content. */
-  [[nodiscard]] std::uint64_t host_content_revision() const
+  /**
+   * Increases when update() finds that vertices of a mesh have other values, or that resources of the host may have
+   * other content.
+   */
+  [[nodiscard]] std::uint64_t content_revision() const
   {
-    return host_content_revision_;
+    return content_revision_;
   }
   /** Increases when update() finds that a factor of a material has changed. */
   [[nodiscard]] std::uint64_t materials_revision() const
@@ -193,11 +196,13 @@ class RenderScene {
   }
   /** Returns \a camera with its position relative to origin_ws(). */
   [[nodiscard]] scene::PlacedCamera relative(scene::PlacedCamera camera) const;
+  /** Planes of the scene's world space, for draw::View::with_clip_planes. */
+  [[nodiscard]] std::vector<glm::vec4> relative(std::span<const glm::dvec4> planes_ws) const;
 
   /** \see Meshes::get */
   [[nodiscard]] const gpu::Batch &batch(scene::Handle<scene::Mesh> mesh, MeshStreams streams)
   {
-    return meshes_.get(device_, scene_.meshes(), mesh, streams);
+    return meshes_.get(device_, scene_, mesh, streams);
   }
   /** \see Images::get */
   [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, scene::ImageUse use,
@@ -218,7 +223,7 @@ class RenderScene {
     return *materials_;
   }
   /**
-   * Write the changed parts of `object_block` and of the blocks of materials. \see MaterialTable::upload
+   * Write the changed parts of `object_block`, of meshes and of the blocks of materials. \see MaterialTable::upload
    * \throws gpu::Error if a block exceeds the limit of the device
    */
   void upload(MaterialClass widest);
@@ -254,7 +259,7 @@ class RenderScene {
   HostChanges host_texture_changes_;
   /** An object casts or receives shadows, and did not before, or the reverse. */
   bool are_flags_changed_ = false;
-  std::uint64_t host_content_revision_ = 0;
+  std::uint64_t content_revision_ = 0;
   /** Scene::revision of the last update. */
   scene::Revision seen_ = 0;
   draw::ObjectBuffer objects_;

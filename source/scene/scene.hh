@@ -7,6 +7,7 @@
 #include "scene_world.hh"
 
 #include <concepts>
+#include <unordered_map>
 
 namespace gnomon::scene {
 
@@ -215,6 +216,21 @@ class Scene {
     change(value);
     replace(handle, std::move(value));
   }
+  /**
+   * Sets the values of some vertices, as a brush of an editor does. The time depends on their number, as does what
+   * renderers upload: all of the runs of 64 vertices that contain changed ones. The first call for a mesh, and each
+   * call for one of deformed_meshes, takes time for all of its vertices.
+   *
+   * Normals and tangents follow positions only where \a values has them, too.
+   * \throws StaleHandle; InvalidEdit for a vertex that the mesh does not have, a vector of another length or one that
+   * is empty in the mesh, and a position that is not finite. The scene is then unchanged.
+   */
+  void set_vertices(Handle<Mesh> mesh, const VertexValues &values);
+  /**
+   * The vertices of a mesh whose values may have changed after the revision \a since of Mesh::Aspect::Shape, in
+   * ascending order. \pre the Layout has not changed since. \throws StaleHandle
+   */
+  [[nodiscard]] std::vector<VertexRange> changed_vertices(Handle<Mesh> mesh, Revision since) const;
   /** Sets Node::parent_from_node without copying the node. */
   void set_transform(Handle<Node> node, const glm::dmat4 &parent_from_node);
   /**
@@ -248,6 +264,9 @@ class Scene {
     else {
       writable_pool<T>().remove(handle, edited());
     }
+    if constexpr (std::same_as<T, Mesh>) {
+      vertex_blocks_.erase(handle);
+    }
   }
 
   /** The pool of a type of thing, for generic code. */
@@ -267,6 +286,20 @@ class Scene {
     Handle<Node> next_sibling;
     glm::dmat4 world_from_node{1.0};
     bool is_visible = true;
+  };
+
+  /** Vertices of a mesh that follow each other, at most vertex_block_size. */
+  struct VertexBlock {
+    Bounds bounds;
+    /** Of the last set_vertices() that changed one of them; 0: none did. */
+    Revision revision = 0;
+  };
+  static constexpr std::size_t vertex_block_size = 64;
+  /** All vertices of a mesh. */
+  struct VertexBlocks {
+    /** Of the last change of the shape that was no set_vertices(). */
+    Revision shape = 0;
+    std::vector<VertexBlock> blocks;
   };
 
   template <typename T>
@@ -337,6 +370,8 @@ class Scene {
   Pool<Node> nodes_;
   std::vector<NodeLinks> links_;
   Pool<Mesh> meshes_;
+  /** Of the meshes that set_vertices() has changed since another change of their shape. */
+  std::unordered_map<Handle<Mesh>, VertexBlocks> vertex_blocks_;
   Pool<Image> images_;
   Pool<Texture> textures_;
   Pool<SurfaceFunction> surface_functions_;

@@ -212,6 +212,11 @@ void Scene::replace_value(Handle<T> handle, T value)
     return;
   }
   edited();
+  if constexpr (std::same_as<T, Mesh>) {
+    if ((changed >> unsigned(Mesh::Aspect::Shape) & 1U) != 0) {
+      vertex_blocks_.erase(handle);
+    }
+  }
   for (unsigned aspect = 0; aspect < unsigned(T::Aspect::Count); aspect++) {
     if ((changed >> aspect & 1U) != 0) {
       things.touch(handle, typename T::Aspect(aspect), revision_);

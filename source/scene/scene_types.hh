@@ -13,6 +13,7 @@
 #include <compare>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -157,7 +158,11 @@ struct HostShape {
 /** Indexed triangles, lines or points of one material (a glTF primitive). Object space, metres. */
 struct Mesh {
   static constexpr std::string_view kind_name = "mesh";
-  enum class Aspect { Name, Shape, Material, Count };
+  /**
+   * Shape: the vectors, the topology and the host's shape. Layout: the same without the values of vertices, that is,
+   * the indices, the number of vertices and the vectors that are not empty.
+   */
+  enum class Aspect { Name, Shape, Layout, Material, Count };
 
   std::string name{};
   std::vector<glm::vec3> positions{};
@@ -204,6 +209,27 @@ struct Mesh {
   {
     return set == 0 ? uvs : second_uvs;
   }
+};
+
+/** New values of some vertices of a mesh. \see Scene::set_vertices */
+struct VertexValues {
+  /** Indices in the vectors of the mesh. */
+  std::span<const std::uint32_t> vertices{};
+  /** As the vectors of Mesh: one for each of `vertices`, or empty, and the mesh keeps its own. */
+  std::span<const glm::vec3> positions{};
+  std::span<const glm::vec3> normals{};
+  std::span<const glm::vec2> uvs{};
+  std::span<const glm::vec2> second_uvs{};
+  std::span<const glm::vec4> tangents{};
+  std::span<const glm::vec4> colors{};
+};
+
+/** Vertices of a mesh that follow each other. */
+struct VertexRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+
+  bool operator==(const VertexRange &) const = default;
 };
 
 /** Calls \a function with each vector of \a mesh that has a value for each position. Empty vectors are skipped. */

@@ -224,6 +224,7 @@ void App::show_document(scene::Scene scene)
   }
   document_.reset();
   document_ = std::make_unique<Document>(window_.device(), std::move(scene), settings);
+  time_line_.open(document_->scene());
   for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->show_all();
     viewport->look_at(*document_);
@@ -490,6 +491,12 @@ void App::update_document()
   for (std::string &text : document_->reload_surface_functions()) {
     message(std::move(text), false);
   }
+  try {
+    time_line_.step(*document_, double(ImGui::GetIO().DeltaTime));
+  }
+  catch (const scene::InvalidEdit &fault) {
+    message(fault.what(), true);
+  }
   render_scene::RenderScene &render_scene = document_->render_scene();
   active().follow(*document_);
   const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
@@ -533,7 +540,8 @@ void App::draw_frame(bool may_wait)
   if (error_panel_.has_ended()) {
     finish_measurement();
   }
-  is_complete_ = true;
+  // Frames follow each other while the scene moves.
+  is_complete_ = !is_playing();
   try {
     update_document();
   }

@@ -5,6 +5,7 @@
 #include "view_document.hh"
 #include "view_panels.hh"
 #include "view_shader_watch.hh"
+#include "view_time_line.hh"
 #include "view_viewport.hh"
 #include "view_window.hh"
 
@@ -125,6 +126,14 @@ class App {
    * possible.
    */
   void begin_transform(TransformKind kind);
+  /** Play the time line, or stop it. A message says if the scene has no animation. */
+  void play(bool is_playing);
+  [[nodiscard]] bool is_playing() const
+  {
+    return time_line_.is_playing();
+  }
+  /** Pose the scene by the animation of the time line. \pre a document is open \throws std::runtime_error */
+  void set_time(double seconds);
   /** Apply \a change, which returns whether it changed the operation. No effect without an operation. */
   void change_transform(const std::function<bool(TransformOperation &operation)> &change);
   void end_transform(bool is_kept);
@@ -292,6 +301,7 @@ class App {
   bool is_leaving_new_ = false;
   bool is_addition_asked_ = false;
 
+  TimeLine time_line_;
   SceneTree scene_tree_;
   FramePanel frame_panel_;
   ShadowPanel shadow_panel_;

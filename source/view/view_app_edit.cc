@@ -115,6 +115,22 @@ void App::toggle_reach()
   message(is_through ? "An area selects visible objects" : "An area selects visible and covered objects", false);
 }
 
+void App::play(bool is_playing)
+{
+  if (time_line_.is_empty()) {
+    message("The scene has no animation", false);
+  }
+  time_line_.play(is_playing);
+}
+
+void App::set_time(double seconds)
+{
+  if (time_line_.is_empty()) {
+    throw std::runtime_error("the scene has no animation");
+  }
+  time_line_.set_time(*document_, seconds);
+}
+
 void App::begin_fly()
 {
   if (document_) {

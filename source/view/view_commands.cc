@@ -180,6 +180,18 @@ void select_box(App &app, Words words)
   drawn_viewport(app).select_area(document(app), overlay::rectangle(from, to), app.active().reach, false);
 }
 
+void clip(App &app, Words words)
+{
+  require_usage("clip", words.empty() || words.size() == 4);
+  WindowViewport &viewport = drawn_viewport(app);
+  if (words.empty() == viewport.is_clipped()) {
+    viewport.toggle_clip();
+  }
+  if (!words.empty()) {
+    viewport.clip(document(app), pixel(words[0], words[1]), pixel(words[2], words[3]));
+  }
+}
+
 void select_lasso(App &app, Words words)
 {
   require_usage("lasso", words.size() % 2 == 0);
@@ -313,6 +325,13 @@ void set(App &app, Words words)
   if (!is_set) {
     throw std::runtime_error(fmt::format("there is no property '{}'", name));
   }
+}
+
+void set_time(App &app, Words words)
+{
+  document(app);
+  app.play(false);
+  app.set_time(number(words[0]));
 }
 
 void undo(App &app, Words /*words*/)
@@ -486,11 +505,13 @@ constexpr std::array commands = std::to_array<Command>({
     {"select", "NODE...", 1, any, Need::Nothing, select},
     {"pick", "X Y", 2, 2, Need::Nothing, pick, true},
     {"box", "X Y TO_X TO_Y", 4, 4, Need::Nothing, select_box, true},
+    {"clip", "[X Y TO_X TO_Y]", 0, 4, Need::Nothing, clip, true},
     {"lasso", "X Y X Y X Y...", 6, any, Need::Nothing, select_lasso, true},
     {"selected", "[NODE...]", 0, any, Need::Nothing, expect_selected},
     {"triangle", "[INDEX]", 0, 1, Need::Nothing, expect_triangle},
     {"inside", "[NODE]", 0, 1, Need::Nothing, expect_inside, true},
     {"set", "PROPERTY VALUE...", 2, 4, Need::Nothing, set},
+    {"time", "SECONDS", 1, 1, Need::Nothing, set_time},
     {"undo", "", 0, 0, Need::Nothing, undo},
     {"redo", "", 0, 0, Need::Nothing, redo},
     {"key", "KEY...", 1, any, Need::Nothing, press_keys},

@@ -67,27 +67,39 @@ class Document {
     return history_;
   }
 
+  /**
+   * Set what \a animation animates to its values at \a seconds. Not an undo step, and a saved scene stays saved. Ends a
+   * transform. \throws scene::InvalidEdit
+   */
+  void pose(const scene::Animation &animation, double seconds);
+
   /** Hide the selected nodes if `selected` is shown, otherwise show them, as an edit of the scene. */
   void toggle_visibility();
   /** Add a node and select it. \see view::add */
   void add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view);
   /** Remove the selected nodes and their descendants, as one undo step. \return false if no node is selected */
   bool remove_selected();
-  /** Duplicate the selected node and select the copy. \return false if no node is selected */
+  /**
+   * Duplicate the selected nodes with their descendants, as one undo step, and select the copies. \return false if no
+   * node is selected
+   */
   bool duplicate_selected();
 
-  /** Start to transform the selected node with the pointer in a picture. \throws as TransformOperation */
+  /**
+   * Start to transform `selected` with the pointer in a picture, and the other selected nodes with it, around its
+   * position. \throws as TransformOperation
+   */
   void begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer);
   /** The running transform; nullptr: none. Call update_transform after changing it. */
   [[nodiscard]] TransformOperation *operation()
   {
     return operation_ ? &*operation_ : nullptr;
   }
-  /** Set the node's matrix from the operation. */
+  /** Set the nodes' matrices from the operation. */
   void update_transform();
   /**
-   * End the transform. Its edits become one undo step; if it is not kept, the node's matrix is restored. No effect
-   * without an operation.
+   * End the transform. It becomes one undo step; if it is not kept, the nodes' matrices are restored. No effect without
+   * an operation.
    */
   void end_transform(bool is_kept);
   /** Kind of the gizmo at the selected node. Empty: none. */
@@ -148,7 +160,7 @@ class Document {
     return settings_revision_;
   }
 
-  /** Panels, the gizmo, transforms and duplicates use this node. Invalid handle: no node is selected. */
+  /** Panels and the gizmo use this node. Invalid handle: no node is selected. */
   scene::Handle<scene::Node> selected{};
   /**
    * Select \a nodes, of which the first becomes `selected`. \a adds: beside those that are selected; otherwise in place
@@ -170,6 +182,8 @@ class Document {
     const bool is_shown = clicked_ && clicked_->node == selected && clicked_revision_ == scene_.revision();
     return is_shown ? &*clicked_ : nullptr;
   }
+  /** Those of selection() that are not below another one. */
+  [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_roots() const;
   /** The selected nodes and their descendants, each once. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_nodes() const;
   /** Bounding box of the selected nodes; a lamp counts as a point. Without a selection: of the scene. */
@@ -178,6 +192,13 @@ class Document {
   [[nodiscard]] scene::Handle<scene::Node> find(const std::string &name) const;
 
  private:
+  /** A node that the operation moves. */
+  struct Moved {
+    scene::Handle<scene::Node> node;
+    /** At the start. */
+    glm::dmat4 parent_from_node{1.0};
+    glm::dmat4 world_from_node{1.0};
+  };
   /** After undo or redo. */
   void follow_history();
   /** Deform meshes whose joints an edit has moved, removed or restored. */
@@ -191,6 +212,8 @@ class Document {
   std::vector<std::string> engine_names_;
   std::map<std::string, std::unique_ptr<draw::Engine>> engines_;
   std::optional<TransformOperation> operation_;
+  /** The operation's node, and those that follow it. */
+  std::vector<Moved> moved_;
   WindowSettings settings_;
   std::uint64_t settings_revision_ = 0;
   bool has_own_shaders_ = false;

@@ -2,9 +2,36 @@
 // Edits of the selected nodes.
 #include "view_document.hh"
 
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace gnomon::view {
+
+static bool is_below(const scene::Scene &scene, scene::Handle<scene::Node> node, scene::Handle<scene::Node> ancestor)
+{
+  while (node && node != ancestor) {
+    node = scene.parent(node);
+  }
+  return bool(node);
+}
+
+std::vector<scene::Handle<scene::Node>> Document::selected_roots() const
+{
+  const std::vector<scene::Handle<scene::Node>> nodes = selection();
+  std::vector<scene::Handle<scene::Node>> roots;
+  std::ranges::copy_if(nodes, std::back_inserter(roots), [&](scene::Handle<scene::Node> node) {
+    scene::Handle<scene::Node> above = scene_.parent(node);
+    while (above && !is_selected(above)) {
+      above = scene_.parent(above);
+    }
+    return !above;
+  });
+  return roots;
+}
 
 void Document::set_world_picture(std::shared_ptr<const scene::WorldPicture> picture)
 {
@@ -55,6 +82,14 @@ bool Document::redo()
   return is_redone;
 }
 
+void Document::pose(const scene::Animation &animation, double seconds)
+{
+  end_transform(true);
+  const bool was_saved = is_saved();
+  scene::pose(scene_, animation, seconds);
+  saved_revision_ = was_saved ? scene_.revision() : saved_revision_;
+}
+
 void Document::toggle_visibility()
 {
   const std::vector<scene::Handle<scene::Node>> nodes = selection();
@@ -93,19 +128,34 @@ bool Document::remove_selected()
 
 bool Document::duplicate_selected()
 {
-  if (!scene_.nodes().is_live(selected)) {
-    return false;
+  std::vector<scene::Handle<scene::Node>> copies;
+  history_.join([&] {
+    for (const scene::Handle<scene::Node> node : selected_roots()) {
+      copies.push_back(duplicate(scene_, node));
+      history_.note_added(scene_, copies.back());
+    }
+  });
+  if (!copies.empty()) {
+    select(copies);
   }
-  select(duplicate(scene_, selected));
-  history_.note_added(scene_, selected);
-  return true;
+  return !copies.empty();
 }
 
 void Document::begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer)
 {
-  end_transform(true);
   operation_.emplace(scene_, selected, transform, map, pointer);
   history_.end_gesture();
+  moved_.clear();
+  const auto add = [&](scene::Handle<scene::Node> node) {
+    moved_.push_back({node, scene_.nodes()[node].parent_from_node, scene_.world_from_node(node)});
+  };
+  add(selected);
+  for (const scene::Handle<scene::Node> node : selected_roots()) {
+    // An ancestor would move the operation's node a second time.
+    if (node != selected && !is_below(scene_, selected, node)) {
+      add(node);
+    }
+  }
 }
 
 void Document::update_transform()
@@ -113,10 +163,25 @@ void Document::update_transform()
   if (operation_ && !scene_.nodes().is_live(operation_->node())) {
     operation_.reset();
   }
-  if (operation_) {
-    const glm::dmat4 moved = operation_->parent_from_node();
-    edit(operation_->node(), [&](scene::Node &node) { node.parent_from_node = moved; });
+  if (!operation_) {
+    return;
   }
+  scene_.set_transform(operation_->node(), operation_->parent_from_node());
+  const glm::dmat4 &start_ws = operation_->start_ws();
+  if (std::abs(glm::determinant(start_ws)) > 0.0) {
+    const glm::dmat4 change = scene_.world_from_node(operation_->node()) * glm::inverse(start_ws);
+    for (const Moved &moved : std::span(moved_).subspan(1)) {
+      if (scene_.nodes().is_live(moved.node)) {
+        // In the space of the parent, which the operation does not move.
+        const scene::Handle<scene::Node> parent = scene_.parent(moved.node);
+        const glm::dmat4 world_from_parent = parent ? scene_.world_from_node(parent) : glm::dmat4(1.0);
+        if (std::abs(glm::determinant(world_from_parent)) > 0.0) {
+          scene_.set_transform(moved.node, glm::inverse(world_from_parent) * change * moved.world_from_node);
+        }
+      }
+    }
+  }
+  deform();
 }
 
 void Document::end_transform(bool is_kept)
@@ -125,13 +190,21 @@ void Document::end_transform(bool is_kept)
     return;
   }
   operation_.reset();
+  // The edits begin at the start of the operation.
+  std::vector<glm::dmat4> ends;
+  std::erase_if(moved_, [&](const Moved &moved) { return !scene_.nodes().is_live(moved.node); });
+  for (const Moved &moved : moved_) {
+    ends.push_back(scene_.nodes()[moved.node].parent_from_node);
+    scene_.set_transform(moved.node, moved.parent_from_node);
+  }
   if (is_kept) {
-    history_.end_gesture();
+    history_.join([&] {
+      for (std::size_t i = 0; i < moved_.size(); i++) {
+        history_.edit(scene_, moved_[i].node, [&](scene::Node &node) { node.parent_from_node = ends[i]; });
+      }
+    });
   }
-  else {
-    history_.revert_gesture(scene_);
-    deform();
-  }
+  deform();
 }
 
 }  // namespace gnomon::view

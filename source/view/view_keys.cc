@@ -32,7 +32,8 @@ constexpr std::array named_keys = std::to_array<NamedKey>({{".", GLFW_KEY_PERIOD
                                                            {"escape", GLFW_KEY_ESCAPE},
                                                            {"delete", GLFW_KEY_DELETE},
                                                            {"backspace", GLFW_KEY_BACKSPACE},
-                                                           {"home", GLFW_KEY_HOME}});
+                                                           {"home", GLFW_KEY_HOME},
+                                                           {"space", GLFW_KEY_SPACE}});
 
 /** Keys of the number block, and their equivalents. */
 constexpr std::array block_keys = std::to_array<std::pair<int, int>>({{GLFW_KEY_KP_DECIMAL, GLFW_KEY_PERIOD},
@@ -94,6 +95,8 @@ const std::array bindings = std::to_array<Binding>({
     {{GLFW_KEY_H, alt}, [](App &app) { app.active().show_all(); }},
     {{GLFW_KEY_SLASH, 0}, [](App &app) { app.isolate_selected(); }},
     {{GLFW_KEY_Z, alt}, [](App &app) { app.toggle_reach(); }},
+    {{GLFW_KEY_Z, shift}, [](App &app) { app.active().has_wireframe = !app.active().has_wireframe; }},
+    {{GLFW_KEY_B, alt}, [](App &app) { app.active().toggle_clip(); }},
     {{GLFW_KEY_G, 0}, transform<TransformKind::Move>},
     {{GLFW_KEY_R, 0}, transform<TransformKind::Rotate>},
     {{GLFW_KEY_S, 0}, transform<TransformKind::Scale>},
@@ -106,6 +109,7 @@ const std::array bindings = std::to_array<Binding>({
          app.begin_transform(TransformKind::Move);
        }
      }},
+    {{GLFW_KEY_SPACE, 0}, [](App &app) { app.play(!app.is_playing()); }},
     {{GLFW_KEY_F, 0}, [](App &app) { app.begin_fly(); }},
     {{GLFW_KEY_GRAVE_ACCENT, shift}, [](App &app) { app.begin_fly(); }},
 });

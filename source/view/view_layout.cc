@@ -319,7 +319,10 @@ void App::show_window()
                    ImGuiWindowFlags_MenuBar | ImGuiWindowFlags_NoScrollWithMouse);
   show_menu();
   const ImVec2 space = ImGui::GetContentRegionAvail();
-  const float height = std::max(1.0F, space.y - ImGui::GetTextLineHeightWithSpacing());
+  const bool has_time_line = document_ && !time_line_.is_empty();
+  const float lines =
+      ImGui::GetTextLineHeightWithSpacing() + (has_time_line ? ImGui::GetFrameHeightWithSpacing() : 0.0F);
+  const float height = std::max(1.0F, space.y - lines);
   const float middle = std::max(1.0F, space.x - left_width_ - right_width_ - 2.0F * splitter_width);
   show_left(height);
   show_splitter("left", height, 1.0F, left_width_);
@@ -328,6 +331,14 @@ void App::show_window()
   ImGui::BeginChild("properties", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
   show_tabs();
   ImGui::EndChild();
+  if (has_time_line) {
+    try {
+      time_line_.show(*document_);
+    }
+    catch (const scene::InvalidEdit &fault) {
+      message(fault.what(), true);
+    }
+  }
   show_status();
   show_question();
   show_leaving();

@@ -120,11 +120,15 @@ void App::show_view_menu()
   if (ImGui::MenuItem("Show all here", "Alt+H", false, active().is_hiding(document_->scene()))) {
     active().show_all();
   }
-  if (ImGui::MenuItem("Select through objects", "Alt+Z", active().reach == overlay::Reach::Through)) {
+  if (ImGui::MenuItem("Clip to a rectangle", "Alt+B", active().is_clipped())) {
+    active().toggle_clip();
+  }
+  if (ImGui::MenuItem("X-ray: see and select through objects", "Alt+Z", active().reach == overlay::Reach::Through)) {
     toggle_reach();
   }
   ImGui::Separator();
   ImGui::MenuItem("Lamps, cameras and gizmo", nullptr, &active().has_overlays);
+  ImGui::MenuItem("Wireframe of unlit", "Shift+Z", &active().has_wireframe);
 }
 
 void App::show_menu()

@@ -62,6 +62,10 @@ void Script::step(App &app)
     }
   }
   const auto wait_for_pictures = [&] {
+    // Pictures of a scene that moves are never complete.
+    if (app.is_playing()) {
+      app.play(false);
+    }
     frames_ = 2;
     waits_ = true;
   };

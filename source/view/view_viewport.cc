@@ -6,6 +6,7 @@
 #include "draw_target.hh"
 #include "gpu_read.hh"
 #include "render_camera.hh"
+#include "unlit_engine.hh"
 
 #include <algorithm>
 #include <utility>
@@ -117,7 +118,13 @@ void WindowViewport::draw_picture(Document &document, draw::Engine &used, double
 bool WindowViewport::draw(Document &document, double budget_seconds)
 {
   render_scene::RenderScene &render_scene = document.render_scene();
-  const Key key{document.scene().revision(), document.settings_revision(), engine, size_px_, render_scene.origin_ws()};
+  const Key key{document.scene().revision(),
+                document.settings_revision(),
+                engine,
+                size_px_,
+                render_scene.origin_ws(),
+                has_wireframe,
+                reach};
   const bool is_same = viewport_ && key == synced_;
   const bool is_synced = is_same && !has_failed_;
   follow(document);
@@ -129,6 +136,9 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
       isolated = isolated_;
     }
     view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated));
+  }
+  if (is_clipped()) {
+    view = view.with_clip_planes(render_scene.relative(clip_planes_ws_));
   }
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
@@ -156,6 +166,9 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
     viewport_->resize(size_px_);
   }
   draw::Engine *one = &document.engine(engine);
+  if (auto *unlit = dynamic_cast<unlit::Engine *>(one)) {
+    unlit->set_display(*viewport_, {has_wireframe, reach == overlay::Reach::Through});
+  }
   if (!is_synced) {
     viewport_->sync(std::span(&one, 1), render_scene.objects());
   }

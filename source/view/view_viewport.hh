@@ -65,6 +65,17 @@ class WindowViewport {
   [[nodiscard]] bool is_hiding(const scene::Scene &scene) const;
   /** Undo hide and isolate. */
   void show_all();
+  /**
+   * Show only what is seen now in the rectangle between two pixels, counted as for pick: the four planes through its
+   * sides cut the rest off. \pre draw was called
+   */
+  void clip(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px);
+  /** Undo clip; if nothing is cut off, the next drag of the left button marks the rectangle for it. */
+  void toggle_clip();
+  [[nodiscard]] bool is_clipped() const
+  {
+    return !clip_planes_ws_.empty();
+  }
   /** Whether the node is left out of this viewport. */
   [[nodiscard]] bool is_hidden(const scene::Scene &scene, scene::Handle<scene::Node> node) const;
   /** Start to transform the selected node with the pointer. \pre draw was called \throws as TransformOperation */
@@ -133,7 +144,9 @@ class WindowViewport {
   std::string engine = "eevee";
   /** Show lamps, cameras, the outline of the selected nodes, and the gizmo. */
   bool has_overlays = true;
-  /** Which nodes the pointer selects in an area. */
+  /** Show the edges of triangles instead of the surfaces of unlit. */
+  bool has_wireframe = false;
+  /** Which nodes the pointer selects in an area. With Through, the surfaces of unlit are seen through. */
   overlay::Reach reach = overlay::Reach::Visible;
 
  private:
@@ -147,6 +160,8 @@ class WindowViewport {
     std::string engine;
     glm::ivec2 size_px{0};
     glm::dvec3 origin_ws{0.0};
+    bool has_wireframe = false;
+    overlay::Reach reach = overlay::Reach::Visible;
 
     bool operator==(const Key &) const = default;
   };
@@ -277,6 +292,9 @@ class WindowViewport {
   /** \see hide, isolate. Removed nodes stay in the lists, as undo may restore them. */
   std::vector<scene::Handle<scene::Node>> hidden_;
   std::vector<scene::Handle<scene::Node>> isolated_;
+  /** \see clip */
+  std::vector<glm::dvec4> clip_planes_ws_;
+  bool is_clip_asked_ = false;
 };
 
 }  // namespace gnomon::view

@@ -98,6 +98,25 @@ void WindowViewport::hide(const Document &document)
                        [&](auto node) { return std::ranges::find(hidden_, node) == hidden_.end(); });
 }
 
+void WindowViewport::clip(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px)
+{
+  const glm::ivec2 first = glm::clamp(glm::ivec2(glm::min(from_px, to_px)), glm::ivec2(0), size_px_ - 1);
+  const glm::ivec2 end = glm::clamp(glm::ivec2(glm::ceil(glm::max(from_px, to_px))), first + 1, size_px_);
+  const gpu::Rectangle region{{first.x, size_px_.y - end.y}, end - first};
+  const draw::View part = overlay::view_of_region(drawn_view_, size_px_, region);
+  clip_planes_ws_.clear();
+  for (const glm::vec4 &plane : std::span(part.frustum_planes_ws()).first(4)) {
+    const glm::dvec3 normal(plane);
+    clip_planes_ws_.emplace_back(normal, double(plane.w) - glm::dot(normal, document.render_scene().origin_ws()));
+  }
+}
+
+void WindowViewport::toggle_clip()
+{
+  is_clip_asked_ = !is_clipped() && !is_clip_asked_;
+  clip_planes_ws_.clear();
+}
+
 void WindowViewport::isolate(const Document &document)
 {
   isolated_ = is_isolated(document.scene()) ? std::vector<scene::Handle<scene::Node>>() : document.selection();
@@ -152,6 +171,9 @@ void WindowViewport::show_notes(const Document &document, glm::vec2 corner, glm:
   else if (const auto hidden_count = count_live(document.scene(), hidden_); hidden_count > 0) {
     write(size.y - 24.0F, fmt::format("{} hidden: Alt+H shows all", hidden_count));
   }
+  if (is_clip_asked_ || is_clipped()) {
+    write(size.y - 44.0F, is_clipped() ? "Clipped: Alt+B shows all" : "Drag a rectangle: it clips the view");
+  }
   if (const auto node = dark_inside(); node && document.scene().nodes().is_live(*node)) {
     write(0.5F * size.y, fmt::format("All that is seen is the unlit back of {}: the eye may be inside. Home shows all.",
                                      document.scene().nodes()[*node].name));
@@ -163,7 +185,7 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
   const ImGuiIO &io = ImGui::GetIO();
   if (!is_dragged_ && ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left) && !io.KeyAlt) {
     const ImVec2 &from = io.MouseClickedPos[ImGuiMouseButton_Left];
-    area_ = {{glm::dvec2(from.x - corner.x, from.y - corner.y)}, io.KeyCtrl};
+    area_ = {{glm::dvec2(from.x - corner.x, from.y - corner.y)}, io.KeyCtrl && !is_clip_asked_};
     is_dragged_ = true;
   }
   if (!area_) {
@@ -172,6 +194,7 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
     // The press stays used: is_dragged_.
     area_.reset();
+    is_clip_asked_ = false;
     return true;
   }
   if (area_->is_lasso ? area_->points_px.back() != pointer_px_ : area_->points_px.size() == 1) {
@@ -179,9 +202,13 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
   }
   area_->points_px.back() = pointer_px_;
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    const std::vector<glm::dvec2> outline = area_->outline_px();
-    area_.reset();
-    select_area(document, outline, reach, io.KeyShift);
+    const Area area = *std::exchange(area_, std::nullopt);
+    if (std::exchange(is_clip_asked_, false)) {
+      clip(document, area.points_px.front(), area.points_px.back());
+    }
+    else {
+      select_area(document, area.outline_px(), reach, io.KeyShift);
+    }
   }
   return true;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "draw_view.hh"
 
+#include "draw_view_shared.h"
+#include "gpu_error.hh"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
@@ -242,6 +245,47 @@ TEST(View, FarAtInfinityCullsNothingInFront)
   const View view(glm::mat4(1), perspective(1, 1, 1, infinity));
   EXPECT_TRUE(view.touches({{0, 0, -1e20F}, 1}));
   EXPECT_FALSE(view.touches({{0, 0, 1e3F}, 1}));
+}
+
+TEST(View, ClipPlanesInCoordinatesOfFragmentsHaveTheSameSides)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> place(-5.0F, 5.0F);
+  const glm::mat4 view_from_world = glm::lookAt(glm::vec3(1, 2, 12), glm::vec3(0), glm::vec3(0, 1, 0));
+  constexpr glm::ivec2 size_px(640, 360);
+  for (const glm::mat4 &projection : {perspective(0.8F, 0.45F, 0.1F, infinity), perspective(0.8F, 0.45F, 0.1F, 100.0F),
+                                      orthographic(8, 4.5F, 0.1F, 50)}) {
+    int behind = 0;
+    for (int i = 0; i < 1000; i++) {
+      const glm::vec4 plane(place(random), place(random), place(random), place(random));
+      const View view = View(view_from_world, projection).with_clip_planes({{0, 0, 0, 1}, plane});
+      const shared::ClipData data = clip_data(view, size_px);
+      const glm::vec3 point(place(random), place(random), place(random));
+      const float height = glm::dot(plane, glm::vec4(point, 1.0F));
+      const glm::vec3 at = ndc(view.clip_from_world(), point);
+      const glm::vec4 fragment(0.5F * (at.x + 1.0F) * float(size_px.x), 0.5F * (at.y + 1.0F) * float(size_px.y), at.z,
+                               1);
+      if (std::abs(height) > 1e-3F) {
+        EXPECT_EQ(glm::dot(data.planes[1], fragment) < 0.0F, height < 0.0F) << i;
+      }
+      EXPECT_GE(glm::dot(data.planes[0], fragment), 0.0F);
+      EXPECT_EQ(data.planes[2], glm::vec4(0.0F)) << "no plane";
+      behind += height < 0.0F ? 1 : 0;
+    }
+    EXPECT_GT(behind, 300);
+  }
+}
+
+TEST(View, KeepsItsClipPlanesAndRefusesTooMany)
+{
+  const View view = View().with_clip_planes({{1, 0, 0, 2}});
+  EXPECT_NE(view, View());
+  EXPECT_EQ(view.with_clip_planes({}), View());
+  EXPECT_EQ(view.with_hidden({}).clip_planes(), view.clip_planes());
+  EXPECT_EQ(view.with_matrices(glm::mat4(2), glm::mat4(1)).clip_planes(), view.clip_planes());
+  EXPECT_NO_THROW(static_cast<void>(View().with_clip_planes(std::vector<glm::vec4>(6))));
+  EXPECT_THROW(static_cast<void>(View().with_clip_planes(std::vector<glm::vec4>(7))), gpu::Error);
+  EXPECT_THROW(static_cast<void>(View().with_clip_planes({{NAN, 0, 0, 1}})), gpu::Error);
 }
 
 }  // namespace

@@ -332,6 +332,18 @@ inline EditedScene material_scene(bool is_rich, const std::string &name)
   add_edit(edited, mesh, "mesh: a position", [](scene::Mesh &one) { one.positions[3].z += 0.5F; });
   add_edit(edited, mesh, "mesh: normals",
            [](scene::Mesh &one) { std::rotate(one.normals.begin(), one.normals.begin() + 4, one.normals.end()); });
+  edited.edits.push_back(
+      {"mesh: positions and colours of two vertices",
+       [mesh](scene::Scene &to) {
+         to.set_vertices(mesh, {.vertices = std::array{9U, 3U},
+                                .positions = std::array{glm::vec3(-1.4F, 0.9F, 1.2F), glm::vec3(0.8F)},
+                                .colors = std::array{glm::vec4(0.3F), glm::vec4(1.0F)}});
+       },
+       [mesh, original = scene.meshes()[mesh]](scene::Scene &to) {
+         to.set_vertices(mesh, {.vertices = std::array{9U, 3U},
+                                .positions = std::array{original.positions[9], original.positions[3]},
+                                .colors = std::array{original.colors[9], original.colors[3]}});
+       }});
   add_edit(edited, mesh, "mesh: fewer triangles", [](scene::Mesh &one) { one.indices.resize(18); });
   add_edit(edited, mesh, "mesh: more vertices", [](scene::Mesh &one) {
     scene::for_each_stream(one, [](auto &stream) { stream.push_back(stream.back()); });

@@ -307,5 +307,54 @@ TEST(TimerTicks, WrapAtTheBitsOfTheCounter)
   EXPECT_EQ(elapsed_ticks(3, 3, 30), 0U);
 }
 
+/** Also without debug messages, for debuggers such as RenderDoc and apitrace. */
+TEST_F(FailureGpu, EveryObjectAndEveryPassHasAName)
+{
+  const Batch batch = test::full_triangle(*device, 0.5F);
+  expect_drawn(batch, 0.25F);
+  const Buffer block = device->create_buffer({"block", BufferKind::Uniform, 64});
+  const Sampler sampler = device->create_sampler({.name = "sampler"});
+  const Texture texels = device->create_texture(
+      {.name = "texels", .kind = TextureKind::Buffer, .format = Format::RGBA32F, .width = 16, .height = 1});
+  const TimerQuery timer = device->create_timer_query("timer");
+  device->time_begin(timer);
+  static std::vector<std::string> groups;
+  groups.clear();
+  {
+    const Hook names(
+        epoxy_glPushDebugGroup, +[](GLenum /*source*/, GLuint /*id*/, GLsizei length, const GLchar *text) {
+          groups.emplace_back(text, std::size_t(length));
+        });
+    const Hook end(
+        epoxy_glPopDebugGroup, +[] {});
+    device->submit(drawing(batch, 0.5F));
+  }
+  device->time_end(timer);
+  EXPECT_EQ(groups, std::vector<std::string>{"p"});
+  struct Kind {
+    GLenum kind;
+    GLboolean (*exists)(GLuint name);
+    int least;
+  };
+  for (const auto &[kind, exists, least] : {Kind{GL_BUFFER, [](GLuint name) { return glIsBuffer(name); }, 6},
+                                            Kind{GL_TEXTURE, [](GLuint name) { return glIsTexture(name); }, 2},
+                                            Kind{GL_SAMPLER, [](GLuint name) { return glIsSampler(name); }, 1},
+                                            Kind{GL_FRAMEBUFFER, [](GLuint name) { return glIsFramebuffer(name); }, 2},
+                                            Kind{GL_PROGRAM, [](GLuint name) { return glIsProgram(name); }, 1},
+                                            Kind{GL_VERTEX_ARRAY, [](GLuint name) { return glIsVertexArray(name); }, 2},
+                                            Kind{GL_QUERY, [](GLuint name) { return glIsQuery(name); }, 2}}) {
+    int count = 0;
+    for (GLuint name = 1; name < 200; name++) {
+      if (exists(name) == GL_TRUE) {
+        count++;
+        GLsizei length = 0;
+        glGetObjectLabel(kind, name, 0, &length, nullptr);
+        EXPECT_GT(length, 0) << "kind " << kind << ", name " << name;
+      }
+    }
+    EXPECT_GE(count, least) << "kind " << kind;
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::gpu

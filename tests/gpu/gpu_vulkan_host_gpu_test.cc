@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <memory>
 #include <thread>
 
@@ -532,6 +533,65 @@ void main()
     expect_contains(refused(theirs.format, VK_IMAGE_LAYOUT_UNDEFINED), "texture 'wrong': no image");
   }
   host->destroy(image);
+}
+
+/** The names that a device has given, by the type of object, and those of groups of commands. */
+struct VulkanNames {
+  static inline PFN_vkGetInstanceProcAddr loader = nullptr;
+  static inline std::map<VkObjectType, std::vector<std::string>> objects;
+  static inline std::vector<std::string> groups;
+
+  static VkResult VKAPI_PTR name_object(VkDevice /*device*/, const VkDebugUtilsObjectNameInfoEXT *info)
+  {
+    objects[info->objectType].emplace_back(info->pObjectName);
+    return VK_SUCCESS;
+  }
+  static void VKAPI_PTR begin(VkCommandBuffer /*commands*/, const VkDebugUtilsLabelEXT *label)
+  {
+    groups.emplace_back(label->pLabelName);
+  }
+  static PFN_vkVoidFunction VKAPI_PTR load(VkInstance instance, const char *name)
+  {
+    const std::string_view wanted(name);
+    return wanted == "vkSetDebugUtilsObjectNameEXT"   ? reinterpret_cast<PFN_vkVoidFunction>(&name_object)
+           : wanted == "vkCmdBeginDebugUtilsLabelEXT" ? reinterpret_cast<PFN_vkVoidFunction>(&begin)
+           : wanted == "vkCmdEndDebugUtilsLabelEXT"   ? nullptr
+                                                      : loader(instance, name);
+  }
+};
+
+TEST_F(VulkanHostGpu, EveryObjectAndEveryPassHasANameForDebuggers)
+{
+  VulkanNames::loader = host->loader;
+  VulkanHost handles = host->handles();
+  handles.loader = &VulkanNames::load;
+  const std::unique_ptr<Device> device = make_device(handles);
+  VulkanNames::objects.clear();
+  const Texture texture = device->create_texture({.name = "picture", .format = Format::RGBA8, .width = 6, .height = 4});
+  const Framebuffer framebuffer = device->create_framebuffer({.name = "fb", .colors = {{&texture}}, .depth = {}});
+  const Sampler sampler = device->create_sampler({.name = "nearest"});
+  const Buffer block = device->create_buffer({"block", BufferKind::Uniform, 64});
+  const TimerQuery timer = device->create_timer_query("timer");
+  const Picture picture(*device);
+  device->time_begin(timer);
+  device->submit(picture.list(framebuffer, {}));
+  device->time_end(timer);
+  EXPECT_EQ(VulkanNames::groups, std::vector<std::string>{"picture"});
+  for (const auto &[type, name] :
+       std::vector<std::pair<VkObjectType, std::string>>{{VK_OBJECT_TYPE_IMAGE, "picture"},
+                                                         {VK_OBJECT_TYPE_IMAGE_VIEW, "framebuffer 'fb'"},
+                                                         {VK_OBJECT_TYPE_SAMPLER, "sampler 'nearest'"},
+                                                         {VK_OBJECT_TYPE_BUFFER, "block"},
+                                                         {VK_OBJECT_TYPE_BUFFER, "positions"},
+                                                         {VK_OBJECT_TYPE_BUFFER, "indices"},
+                                                         {VK_OBJECT_TYPE_SHADER_MODULE, "pixels"},
+                                                         {VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, "pixels"},
+                                                         {VK_OBJECT_TYPE_PIPELINE_LAYOUT, "pixels"},
+                                                         {VK_OBJECT_TYPE_PIPELINE, "pixels"},
+                                                         {VK_OBJECT_TYPE_QUERY_POOL, "timer"}}) {
+    const std::vector<std::string> &names = VulkanNames::objects[type];
+    EXPECT_TRUE(std::ranges::find(names, name) != names.end()) << "type " << type << ": " << name;
+  }
 }
 
 }  // namespace

@@ -134,9 +134,71 @@ TEST_F(RenderSceneTest, AMeshIsUploadedOnceAndAgainWhereItsShapeChanged)
   scene.edit(mesh, [](scene::Mesh &value) { value.name = "renamed"; });
   scene.edit(mesh, [&](scene::Mesh &value) { value.material = add_material(scene, glm::vec3(1.0F)); });
   EXPECT_EQ(uploads_of_batch(mesh), 0U) << "the same shape";
-  scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].x -= 1.0F; });
-  EXPECT_EQ(uploads_of_batch(mesh), bytes);
+  scene.edit(mesh, [](scene::Mesh &value) { value.indices.resize(3); });
+  EXPECT_EQ(uploads_of_batch(mesh), bytes - 3 * sizeof(std::uint32_t));
   EXPECT_EQ(uploads_of_batch(mesh), 0U);
+}
+
+TEST_F(RenderSceneTest, OtherValuesOfVerticesAreWrittenIntoTheBatchThatPassesDraw)
+{
+  constexpr std::size_t count = 1000;
+  scene::Mesh long_mesh;
+  for (std::size_t i = 0; i < count; i++) {
+    long_mesh.positions.emplace_back(0.01F * float(i), 0, 0);
+  }
+  long_mesh.normals.assign(count, {0, 0, 1});
+  long_mesh.uvs.assign(count, glm::vec2(0));
+  long_mesh.indices = {0, 1, 2};
+  const auto edited = scene.add(long_mesh);
+  const auto node = add_object(scene, edited, glm::dmat4(1.0));
+  render_scene.update();
+  const gpu::ResourceId id = render_scene.batch(edited, MeshStreams::Uvs).id();
+  EXPECT_GT(uploaded_by([] {}), 0U);
+  const std::uint64_t passes = render_scene.passes_revision();
+  const std::uint64_t content = render_scene.content_revision();
+  const auto move = [&](std::uint32_t vertex, const glm::vec3 &position) {
+    scene.set_vertices(edited, {.vertices = std::span(&vertex, 1), .positions = std::span(&position, 1)});
+  };
+  constexpr std::size_t block_bytes = 64 * (2 * sizeof(glm::vec3) + sizeof(glm::vec2));
+  EXPECT_EQ(uploaded_by([&] {
+              move(70, {0.7F, 0.001F, 0});
+            }),
+            block_bytes + sizeof(shared::ObjectData))
+      << "a larger box is another culling volume";
+  EXPECT_EQ(uploaded_by([&] {
+              move(71, {0.71F, 0.0005F, 0});
+              move(500, {5, 0.0005F, 0});
+            }),
+            2 * block_bytes);
+  EXPECT_EQ(uploaded_by([] {}), 0U);
+  EXPECT_EQ(uploaded_by([&] { move(71, {0.71F, 0.0005F, 0}); }), 0U) << "the same value";
+  EXPECT_EQ(uploaded_by([&] { scene.edit(edited, [](scene::Mesh &all) {
+                                all.normals[3] = {0, 1, 0};
+                              }); }),
+            count * (2 * sizeof(glm::vec3) + sizeof(glm::vec2)));
+  EXPECT_EQ(render_scene.batch(edited, MeshStreams::Shape).id(), id);
+  EXPECT_EQ(render_scene.passes_revision(), passes);
+  EXPECT_EQ(render_scene.content_revision(), content + 3);
+  EXPECT_EQ(render_scene.object(object_of(node)).bounds, scene.meshes()[edited].bounds);
+  EXPECT_EQ(uploads_of_batch(edited, MeshStreams::All), count * (2 * 12 + 4 * 8) + 12)
+      << "a batch with more streams";
+}
+
+TEST_F(RenderSceneTest, VerticesOfALostPacketAreWrittenAgain)
+{
+  static_cast<void>(render_scene.batch(mesh, MeshStreams::Shape));
+  uploaded_by([] {});
+  {
+    gpu::Packet lost;
+    const gpu::Recording recording(*device, lost);
+    scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].z = 1.0F; });
+    render_scene.update();
+    render_scene.upload(MaterialClass::Plain);
+  }
+  const auto batch_bytes = [&] { return device->live(*render_scene.meshes().find(mesh)).upload_bytes; };
+  const std::uint64_t before = batch_bytes();
+  uploaded_by([] {});
+  EXPECT_EQ(batch_bytes(), before + 4 * 2 * sizeof(glm::vec3));
 }
 
 TEST_F(RenderSceneTest, AMeshGetsTextureCoordinatesWhereTheyAreReadAndKeepsThem)
@@ -146,8 +208,8 @@ TEST_F(RenderSceneTest, AMeshGetsTextureCoordinatesWhereTheyAreReadAndKeepsThem)
   EXPECT_EQ(uploads_of_batch(box), bare);
   EXPECT_EQ(uploads_of_batch(box, MeshStreams::Uvs), bare + 24 * sizeof(glm::vec2));
   EXPECT_EQ(uploads_of_batch(box), 0U) << "another viewport may read them";
-  scene.edit(box, [](scene::Mesh &value) { value.positions[0].x -= 1.0F; });
-  EXPECT_EQ(uploads_of_batch(box), bare) << "no viewport asked for those of the new shape";
+  scene.edit(box, [](scene::Mesh &value) { value.indices.resize(33); });
+  EXPECT_EQ(uploads_of_batch(box), bare - 3 * sizeof(std::uint32_t)) << "no viewport asked for those of the new shape";
 }
 
 TEST_F(RenderSceneTest, LevelsOfAMaskAreThoseOfCutoffsThatMaterialsHave)
@@ -309,23 +371,23 @@ TEST_F(RenderSceneTest, OtherContentOfTheHostBuildsNoPassAgain)
   render_scene.update();
   const gpu::ResourceId first = render_scene.batch(terrain, MeshStreams::Shape).id();
   const std::uint64_t passes = render_scene.passes_revision();
-  std::uint64_t content = render_scene.host_content_revision();
+  std::uint64_t content = render_scene.content_revision();
   EXPECT_TRUE(changed_by([&] { render_scene.set_host_batch(terrain, host_batch); }).empty());
   EXPECT_EQ(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
   EXPECT_EQ(render_scene.passes_revision(), passes);
-  EXPECT_GT(render_scene.host_content_revision(), content);
-  content = render_scene.host_content_revision();
+  EXPECT_GT(render_scene.content_revision(), content);
+  content = render_scene.content_revision();
   gpu::HostBatch shorter = host_batch;
   shorter.index_count = 3;
   render_scene.set_host_batch(terrain, shorter);
   render_scene.update();
   EXPECT_NE(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
   EXPECT_GT(render_scene.passes_revision(), passes);
-  EXPECT_GT(render_scene.host_content_revision(), content);
-  content = render_scene.host_content_revision();
+  EXPECT_GT(render_scene.content_revision(), content);
+  content = render_scene.content_revision();
   render_scene.set_host_batch(mesh, std::nullopt);
   render_scene.update();
-  EXPECT_EQ(render_scene.host_content_revision(), content) << "it had none";
+  EXPECT_EQ(render_scene.content_revision(), content) << "it had none";
 }
 
 TEST_F(RenderSceneTest, AHostsMeshInThePlaceOfARemovedOneHasNoBuffers)
@@ -651,7 +713,8 @@ TEST_F(RenderSceneTest, PassesRevisionTellsWhatPassesAreMadeOf)
   EXPECT_TRUE(edit_material([](scene::Material &value) { value.alpha_mode = scene::AlphaMode::Mask; }));
   EXPECT_TRUE(edit_material([&](scene::Material &value) { value.base_color_texture = texture; }));
   EXPECT_FALSE(edit_material([](scene::Material &value) { value.roughness = 0.25F; }));
-  EXPECT_TRUE(is_changed_by([&] { scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].z = 1.0F; }); }));
+  EXPECT_TRUE(is_changed_by([&] { scene.edit(mesh, [](scene::Mesh &value) { value.indices.resize(3); }); }));
+  EXPECT_FALSE(is_changed_by([&] { scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].z = 1.0F; }); }));
   EXPECT_TRUE(is_changed_by([&] { scene.edit(mesh, [](scene::Mesh &value) { value.material = {}; }); }));
   EXPECT_TRUE(
       is_changed_by([&] { scene.edit(scene.images().first(), [](scene::Image &value) { value.texels[0] = 77; }); }));

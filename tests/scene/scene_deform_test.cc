@@ -147,6 +147,17 @@ TEST_F(SceneDeformTest, AnEditIsPosedWithTheRest)
   EXPECT_EQ(scene.deformed_meshes[0].positions[5], glm::vec3(1, 0, 1));
 }
 
+TEST_F(SceneDeformTest, AnEditOfSomeVerticesIsOneOfTheWholeMesh)
+{
+  Scene other = scene;
+  const glm::vec3 moved = scene.meshes()[mesh].positions[2] + glm::vec3(0.25F);
+  const std::uint32_t vertex = 2;
+  scene.set_vertices(mesh, {.vertices = {&vertex, 1}, .positions = {&moved, 1}});
+  other.edit(mesh, [&](Mesh &edited) { edited.positions[2] = moved; });
+  EXPECT_EQ(scene.deformed_meshes[0].positions, other.deformed_meshes[0].positions);
+  EXPECT_EQ(scene.meshes()[mesh].positions, other.meshes()[mesh].positions);
+}
+
 TEST_F(SceneDeformTest, AnEditBeforeTheFirstPoseIsOneOfTheRestShape)
 {
   scene.edit(mesh, [](Mesh &edited) { edited.positions[6] = {9, 9, 9}; });

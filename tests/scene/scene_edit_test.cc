@@ -661,17 +661,19 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
                                      [](Mesh &mesh) {
                                        mesh.normals[0] = {1, 0, 0};
                                      }},
-                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.uvs.resize(3); }},
-                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.second_uvs.resize(3); }},
-                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.tangents.resize(3); }},
-                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.colors.resize(3); }},
-                                    {Mesh::Aspect::Shape,
-                                     [](Mesh &mesh) {
-                                       mesh.indices = {0, 2, 1};
-                                     }},
                                     {Mesh::Aspect::Material, [](Mesh &mesh) {
                                        mesh.material = {7, 1};
                                      }}});
+  for (void (*change)(Mesh &) :
+       {+[](Mesh &mesh) { mesh.uvs.resize(3); }, +[](Mesh &mesh) { mesh.second_uvs.resize(3); },
+        +[](Mesh &mesh) { mesh.tangents.resize(3); }, +[](Mesh &mesh) { mesh.colors.resize(3); },
+        +[](Mesh &mesh) { std::swap(mesh.indices[1], mesh.indices[2]); }}) {
+    Scene scene;
+    const auto mesh = scene.add(triangle());
+    Changes<Mesh> changes(scene, mesh);
+    scene.edit(mesh, change);
+    EXPECT_EQ(changes.take(), (std::vector{Mesh::Aspect::Shape, Mesh::Aspect::Layout}));
+  }
   expect_aspects<Node>({}, {{Node::Aspect::Name, [](Node &node) { node.name = "renamed"; }},
                             {Node::Aspect::Transform, [](Node &node) { node.parent_from_node[3].x = 1.0; }},
                             {Node::Aspect::Content,
@@ -689,6 +691,118 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
                             {Node::Aspect::Visibility, [](Node &node) { node.is_visible = false; }},
                             {Node::Aspect::Shadow, [](Node &node) { node.casts_shadow = false; }},
                             {Node::Aspect::Shadow, [](Node &node) { node.receives_shadow = false; }}});
+}
+
+/** A mesh of 1000 vertices, edited by few at a time. */
+class SceneVertices : public testing::Test {
+ protected:
+  SceneVertices()
+  {
+    Mesh made;
+    for (int i = 0; i < count; i++) {
+      made.positions.push_back(somewhere());
+    }
+    made.normals.assign(std::size_t(count), {0, 0, 1});
+    made.colors.assign(std::size_t(count), glm::vec4(1.0F));
+    made.indices = {0, 1, 2};
+    mesh = scene.add(made);
+  }
+  glm::vec3 somewhere()
+  {
+    std::uniform_real_distribution<float> place(-1.0F, 1.0F);
+    return {place(random), place(random), place(random)};
+  }
+  void move(std::vector<std::uint32_t> vertices)
+  {
+    std::vector<glm::vec3> positions;
+    std::ranges::generate_n(std::back_inserter(positions), std::ptrdiff_t(vertices.size()),
+                            [&] { return somewhere(); });
+    scene.set_vertices(mesh, {.vertices = vertices, .positions = positions});
+  }
+  [[nodiscard]] Revision shape() const
+  {
+    return scene.meshes().revision(mesh, Mesh::Aspect::Shape);
+  }
+
+  static constexpr int count = 1000;
+  const std::vector<VertexRange> whole = {{0, count}};
+  std::mt19937 random{5};
+  Scene scene;
+  Handle<Mesh> mesh;
+};
+
+TEST_F(SceneVertices, HaveTheBoundsOfAMeshThatWasAddedSo)
+{
+  Changes<Mesh> changes(scene, mesh);
+  for (std::uint32_t i = 0; i < 300; i++) {
+    const Bounds &bounds = scene.meshes()[mesh].bounds;
+    const std::vector<glm::vec3> &positions = scene.meshes()[mesh].positions;
+    // Often the vertex on a face of the box, which then moves inwards.
+    const auto extreme = std::ranges::find(positions, bounds.max.x, &glm::vec3::x);
+    move({std::uint32_t(extreme - positions.begin()), 7 * i % count, 999});
+    Scene other;
+    const Handle<Mesh> added = other.add(scene.meshes()[mesh]);
+    EXPECT_EQ(other.meshes()[added].bounds, scene.meshes()[mesh].bounds) << i;
+  }
+  EXPECT_EQ(changes.take(), std::vector{Mesh::Aspect::Shape});
+}
+
+TEST_F(SceneVertices, AreNamedToEachThatAsksForChanges)
+{
+  const Revision first = shape();
+  EXPECT_EQ(scene.changed_vertices(mesh, 0), whole);
+  move({70});
+  const Revision second = shape();
+  EXPECT_GT(second, first);
+  EXPECT_EQ(scene.changed_vertices(mesh, first), (std::vector<VertexRange>{{64, 64}}));
+  EXPECT_TRUE(scene.changed_vertices(mesh, second).empty());
+  move({999, 128, 5});
+  EXPECT_EQ(scene.changed_vertices(mesh, second), (std::vector<VertexRange>{{0, 64}, {128, 64}, {960, 40}}));
+  EXPECT_EQ(scene.changed_vertices(mesh, first), (std::vector<VertexRange>{{0, 192}, {960, 40}}));
+  const Revision third = shape();
+  const std::uint32_t vertex = 5;
+  scene.set_vertices(mesh, {.vertices = {&vertex, 1}, .positions = {&scene.meshes()[mesh].positions[5], 1}});
+  EXPECT_EQ(shape(), third) << "the same value";
+  scene.edit(mesh, [](Mesh &edited) { edited.normals[3] = {1, 0, 0}; });
+  const Revision fourth = shape();
+  move({70});
+  EXPECT_EQ(scene.changed_vertices(mesh, third), whole) << "an edit of all was between them";
+  EXPECT_EQ(scene.changed_vertices(mesh, fourth), (std::vector<VertexRange>{{64, 64}}));
+  const Scene copy = scene;
+  EXPECT_EQ(copy.changed_vertices(mesh, shape()), whole) << "another content";
+  Mesh removed = scene.meshes()[mesh];
+  scene.remove(mesh);
+  scene.restore(mesh, std::move(removed));
+  EXPECT_EQ(scene.changed_vertices(mesh, shape() - 1), whole);
+}
+
+TEST_F(SceneVertices, ThatDoNotFitAreRefused)
+{
+  const Mesh before = scene.meshes()[mesh];
+  const Revision revision = scene.revision();
+  const std::array<std::uint32_t, 2> vertices = {3, 4};
+  const std::array<glm::vec3, 2> positions = {glm::vec3(1), glm::vec3(2)};
+  const auto refused = [&](const VertexValues &values) -> std::string {
+    try {
+      scene.set_vertices(mesh, values);
+    }
+    catch (const InvalidEdit &error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  const std::array<std::uint32_t, 2> beyond = {3, 1000};
+  const std::array<glm::vec3, 2> infinite = {glm::vec3(1), glm::vec3(0, INFINITY, 0)};
+  EXPECT_EQ(refused({.vertices = beyond, .positions = positions}), "mesh '': vertex 1000 is beyond its 1000 positions");
+  EXPECT_EQ(refused({.vertices = vertices, .normals = std::span(positions).first(1)}),
+            "mesh '': 1 normals for 2 vertices");
+  EXPECT_EQ(refused({.vertices = vertices, .uvs = std::array{glm::vec2(0), glm::vec2(0)}}), "mesh '': it has no uvs");
+  EXPECT_EQ(refused({.vertices = vertices, .positions = infinite}), "mesh '': position 4 is not finite");
+  EXPECT_EQ(refused({.vertices = vertices}), "nothing");
+  EXPECT_EQ(scene.revision(), revision);
+  EXPECT_EQ(scene.meshes()[mesh].positions, before.positions);
+  scene.remove(mesh);
+  EXPECT_THROW(scene.set_vertices(mesh, {}), StaleHandle);
 }
 
 TEST(SceneRevision, MovingAParentChangesTheTransformsBelowAlone)

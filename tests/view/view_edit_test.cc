@@ -7,6 +7,7 @@
 #include "view_icons.hh"
 #include "view_keys.hh"
 #include "view_shader_watch.hh"
+#include "view_time_line.hh"
 
 #include "gltf_export.hh"
 #include "gltf_import.hh"
@@ -15,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -670,6 +672,126 @@ TEST(ViewDocumentTest, SeveralNodesAreSelectedTheFirstOfThemForThePanelsAndWhatI
   document.select(document.selection().back(), true);
   EXPECT_TRUE(document.undo());
   EXPECT_EQ(document.selected, nodes[1]) << "the node beside the one that is gone";
+}
+
+/** Two nodes with turned parents, and a child of one. */
+class ViewDocumentTransformTest : public testing::Test {
+ protected:
+  ViewDocumentTransformTest()
+  {
+    scene::Scene made;
+    const auto parent = made.add(Node{.name = "parent", .parent_from_node = placed_at({1, 2, 3})});
+    a = made.add(Node{.name = "a", .parent_from_node = placed_at(middle)});
+    b = made.add(Node{.name = "b", .parent_from_node = placed_at({0.5, 0, 1})}, parent);
+    child = made.add(Node{.name = "child", .parent_from_node = placed_at({0, 0.5, 0})}, b);
+    document.emplace(*device, std::move(made), default_settings());
+  }
+  [[nodiscard]] std::array<glm::dmat4, 3> worlds() const
+  {
+    return {document->scene().world_from_node(a), document->scene().world_from_node(b),
+            document->scene().world_from_node(child)};
+  }
+  void transform(TransformKind kind, std::string_view typed, bool is_kept)
+  {
+    document->begin_transform({kind, TransformAxis::Y}, map_from(eye), {200, 150});
+    for (const char character : typed) {
+      document->operation()->type(character);
+      document->update_transform();
+    }
+    document->end_transform(is_kept);
+  }
+
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  Handle<Node> a, b, child;
+  std::optional<Document> document;
+};
+
+TEST_F(ViewDocumentTransformTest, AllSelectedNodesMoveTurnAndScaleAroundTheOneOfTheGizmoAsOneStep)
+{
+  document->select(std::vector{a, b, child});
+  const auto before = worlds();
+  const glm::dvec3 pivot(before[0][3]);
+  const auto around = [&](const glm::dmat4 &change) {
+    return glm::translate(glm::dmat4(1), pivot) * change * glm::translate(glm::dmat4(1), -pivot);
+  };
+  for (const auto &[kind, typed, change] :
+       {std::tuple(TransformKind::Move, "1.5", glm::translate(glm::dmat4(1), {0, 1.5, 0})),
+        {TransformKind::Rotate, "90", around(glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0)))},
+        {TransformKind::Scale, "3", around(glm::scale(glm::dmat4(1), {1, 3, 1}))}}) {
+    transform(kind, typed, true);
+    const auto after = worlds();
+    for (std::size_t i = 0; i < 3; i++) {
+      EXPECT_LT(difference(after[i], change * before[i]), 1e-8) << typed << ' ' << i;
+    }
+    EXPECT_EQ(document->history().undo_count(), 1U);
+    EXPECT_TRUE(document->undo());
+    EXPECT_EQ(worlds(), before);
+    EXPECT_TRUE(document->redo());
+    EXPECT_EQ(worlds(), after);
+    EXPECT_TRUE(document->undo());
+    transform(kind, typed, false);
+    EXPECT_EQ(worlds(), before) << "not kept";
+    EXPECT_EQ(document->history().undo_count(), 0U);
+  }
+  // Below a selected node, the gizmo's alone moves.
+  document->select(std::vector{child, b});
+  transform(TransformKind::Move, "2", true);
+  EXPECT_EQ(worlds()[1], before[1]);
+  EXPECT_LT(difference(worlds()[2], glm::translate(glm::dmat4(1), {0, 2, 0}) * before[2]), 1e-8);
+}
+
+TEST_F(ViewDocumentTransformTest, AllSelectedNodesAreDuplicatedAsOneStepEachOnce)
+{
+  document->select(std::vector{a, b, child});
+  EXPECT_TRUE(document->duplicate_selected());
+  EXPECT_EQ(document->scene().nodes().size(), 7U) << "a, and b with its child";
+  EXPECT_EQ(document->selection().size(), 2U);
+  EXPECT_FALSE(document->is_selected(a) || document->is_selected(b));
+  EXPECT_TRUE(document->undo());
+  EXPECT_EQ(document->scene().nodes().size(), 4U);
+  EXPECT_EQ(document->history().undo_count(), 0U);
+  document->select(Handle<Node>());
+  EXPECT_FALSE(document->duplicate_selected());
+}
+
+TEST(ViewTimeLineTest, PosesAreNoEditsAndPlayingBeginsAgainAfterTheEnd)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  const std::array nodes = {scene.add(Node{.name = "a"}), scene.add(Node{.name = "b"})};
+  for (const Handle<Node> node : nodes) {
+    scene::AnimatedNode animated;
+    animated.node = node;
+    animated.translation_track =
+        std::make_shared<const scene::Track>(scene::Track{scene::Interpolation::Linear, 3, {0, 2}, {0, 0, 0, 4, 0, 0}});
+    scene.animations.push_back({scene.nodes()[node].name, {animated}, {}});
+  }
+  Document document(*device, std::move(scene), default_settings());
+  const auto x = [&](std::size_t node) { return document.scene().nodes()[nodes[node]].parent_from_node[3].x; };
+  TimeLine line;
+  line.play(true);
+  EXPECT_FALSE(line.is_playing()) << "nothing is open";
+  line.open(document.scene());
+  line.set_time(document, 0.5);
+  EXPECT_EQ(x(0), 1.0);
+  EXPECT_EQ(x(1), 1.0) << "all animations";
+  EXPECT_TRUE(document.is_saved());
+  EXPECT_EQ(document.history().undo_count(), 0U);
+  line.step(document, 1.0);
+  EXPECT_EQ(line.seconds(), 0.5) << "it does not play";
+  line.play(true);
+  line.step(document, 1.0);
+  EXPECT_EQ(x(0), 3.0);
+  line.step(document, 1.0);
+  EXPECT_EQ(x(0), 1.0);
+  line.set_time(document, 9.0);
+  EXPECT_EQ(line.seconds(), 2.0);
+  document.edit(nodes[0], [](Node &node) { node.name = "edited"; });
+  EXPECT_FALSE(document.is_saved());
+  line.step(document, 0.25);
+  EXPECT_FALSE(document.is_saved());
+  line.open(scene::Scene());
+  EXPECT_TRUE(line.is_empty());
 }
 
 TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndone)

@@ -21,7 +21,7 @@ draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::
     clip_from_view[column][0] += offset_clip.x * clip_from_view[column][3];
     clip_from_view[column][1] += offset_clip.y * clip_from_view[column][3];
   }
-  return {view.view_from_world(), clip_from_view, view.lens(), view.hidden()};
+  return view.with_matrices(view.view_from_world(), clip_from_view, view.lens());
 }
 
 /** \a place of the unit square in the regular polygon around the origin, whose corners are on the unit circle. */
@@ -57,14 +57,14 @@ draw::View view_through_lens(const draw::View &view, int index, int count, std::
       clip_from_view[2][axis] -= clip_from_view[axis][axis] * point[axis] / lens.focus_distance;
     }
   }
-  return {view_from_world, clip_from_view, {}, view.hidden()};
+  return view.with_matrices(view_from_world, clip_from_view);
 }
 
 draw::View view_around_lens(const draw::View &view)
 {
   const draw::Lens &lens = view.lens();
   if (lens.radius == 0.0F) {
-    return {view.view_from_world(), view.clip_from_view(), {}, view.hidden()};
+    return view.with_matrices(view.view_from_world(), view.clip_from_view());
   }
   // At the distance d, half the view is s d wide, with the slope s. Through a point x of the lens, it is moved by
   // x (1 - d / focus). A view whose eye is max(x) / min(s) behind contains all, with a slope of s + max(x) / focus.
@@ -86,7 +86,7 @@ draw::View view_around_lens(const draw::View &view)
     clip_around[2][axis] = middle / wide[axis];
     view_from_world[3][axis] += middle * back;
   }
-  return {view_from_world, clip_around, {}, view.hidden()};
+  return view.with_matrices(view_from_world, clip_around);
 }
 
 }  // namespace gnomon::eevee

@@ -160,6 +160,9 @@ void Engine::begin_draw(draw::Viewport &viewport)
 /** Update the blocks that all passes of a sample read. */
 void Engine::update_view(Data &data, const draw::View &view)
 {
+  if (data.buffers.clip_block) {
+    scene_.device().update(data.buffers.clip_block, draw::clip_data(view, data.buffers.main_fb.size_px()));
+  }
   data.shared->materials.follow(scene_);
   scene_.device().update(data.buffers.view_block, view_data(view, settings_, data.sample_index, scene_.bounds()));
 }
@@ -200,6 +203,10 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
       has_background(settings_, scene_) || std::ranges::any_of(data.surfaces.objects(), is_visible);
   data.is_seen |= is_sample_seen;
   data.is_transmission_seen = false;
+  const bool is_clipped = !view.clip_planes().empty();
+  if (std::exchange(data.is_clipped, is_clipped) != is_clipped) {
+    data.is_recorded = false;
+  }
   const bool awaits_depths = data.is_seen && !viewport.is_moving() && data.depth.awaits(view);
   const bool is_for_feedback = is_sample_seen && awaits_depths && viewport.draws_until_final();
   if (is_sample_seen) {
@@ -214,7 +221,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     if (is_for_feedback) {
       // Cascades are fitted to the same depths, whatever range of samples is drawn.
       sample_view =
-          view_of_sample({view.view_from_world(), view.clip_from_view(), {}, view.hidden()}, viewport, settings_, 0);
+          view_of_sample(view.with_matrices(view.view_from_world(), view.clip_from_view()), viewport, settings_, 0);
       data.visible.update(sample_view, scene_.objects());
     }
     data.blend.order(scene_, sample_view, data.visible, data.materials.transmissive, data.is_transmission_seen);

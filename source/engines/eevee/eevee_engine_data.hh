@@ -47,6 +47,8 @@ struct SharedData {
   SceneLights lights{world};
   SceneShadows shadows;
   ShadowPass shadow_pass;
+  /** A view has had clip planes. Programs of blended surfaces then read more blocks. */
+  bool is_clipped = false;
   /** gpu::Device::loss_count up to which lost submissions were handled. */
   std::uint64_t loss_count = 0;
 };
@@ -93,6 +95,8 @@ struct Data final : draw::EngineViewportData {
   bool is_synced = false;
   /** Passes, programs and targets are up to date: an object or a background was visible since the last sync. */
   bool is_recorded = false;
+  /** The view of the last sample has clip planes. */
+  bool is_clipped = false;
   /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;
   /** An object of DrawnMaterials::transmissive is in the view of the current sample. */

@@ -52,16 +52,18 @@ enum class Feature : std::uint32_t {
   Multiscatter = 1U << 17,
   /** Pixels visit only the lights that can reach their froxel. The lights are in `light_texture`. */
   LightClusters = 1U << 18,
+  /** The view has clip planes. Only for programs that write depths, or draw blended surfaces. */
+  ClipPlanes = 1U << 19,
   /**
    * With several samples, a lamp with an extent may be reflected as a whole (HIGHLIGHT_LOBE_POINTS). It is a constant
    * of programs with LampShape, and selects no variant: their interfaces are the same.
    */
-  LampHighlights = 1U << 19,
+  LampHighlights = 1U << 20,
   /**
    * The surface receives occlusion of the world's light in a picture of one sample. A constant of programs with World,
    * as LampHighlights is of those with LampShape.
    */
-  WorldOcclusion = 1U << 20,
+  WorldOcclusion = 1U << 21,
 };
 
 GNOMON_MASK_OPERATORS(Feature)

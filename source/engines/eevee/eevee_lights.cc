@@ -60,9 +60,9 @@ bool SceneLights::sync(const render_scene::RenderScene &scene, const Settings &s
                        std::uint64_t settings_revision, std::uint64_t shaders_revision, SceneShadows &shadows)
 {
   emission_.update(scene, settings.planned_sample_count() > 1 && settings.emissive_point_count > 0);
-  const Key key{
-      scene.lamps_revision(), scene.objects().revision(),   scene.passes_revision(), settings_revision,
-      shaders_revision,       shadows.viewports_revision(), emission_.revision(),    scene.host_content_revision()};
+  const Key key{scene.lamps_revision(), scene.objects().revision(), scene.passes_revision(),
+                settings_revision,      shaders_revision,           shadows.viewports_revision(),
+                emission_.revision(),   scene.content_revision()};
   if (synced_ == key) {
     return false;
   }

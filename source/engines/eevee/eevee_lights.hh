@@ -122,7 +122,7 @@ class SceneLights {
     std::uint64_t shaders = 0;
     std::uint64_t viewports = 0;
     std::uint64_t emission = 0;
-    std::uint64_t host_content = 0;
+    std::uint64_t content = 0;
 
     bool operator==(const Key &) const = default;
   };

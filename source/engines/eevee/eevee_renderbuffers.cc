@@ -28,6 +28,16 @@ void RenderBuffers::make(draw::Viewport &viewport)
   nearest = device.create_sampler({.name = "nearest"});
 }
 
+void RenderBuffers::set_clipped(gpu::Device &device, bool is_clipped)
+{
+  if (!is_clipped) {
+    clip_block = {};
+  }
+  else if (!clip_block) {
+    clip_block = device.create_buffer({"clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
+  }
+}
+
 void RenderBuffers::resized()
 {
   depth_fb = {};
@@ -99,6 +109,8 @@ void RenderBuffers::report(draw::Viewport &viewport, ResourceReport &report) con
                     nothing_seen);
   report.add_target(radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
   report.add_block(view_block, "view_block", "whatever is drawn", nothing_seen);
+  report.add_block(clip_block, "clip_block", "planes in the coordinates of fragments",
+                   report.is_recorded ? "the view has no clip planes" : nothing_seen);
 }
 
 }  // namespace gnomon::eevee

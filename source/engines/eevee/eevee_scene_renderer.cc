@@ -26,7 +26,8 @@ void SceneRenderer::sync()
 
 draw::View SceneRenderer::view_of(const scene::PlacedCamera &camera) const
 {
-  const draw::View view = eevee::view_of(camera, viewport_.size_px(), render_scene_.origin_ws());
+  const draw::View view = eevee::view_of(camera, viewport_.size_px(), render_scene_.origin_ws())
+                              .with_clip_planes(render_scene_.relative(clip_planes_ws_));
   return hidden_.empty() && isolated_.empty() ? view
                                               : view.with_hidden(render_scene_.hidden_objects(hidden_, isolated_));
 }

@@ -124,7 +124,16 @@ class SceneRenderer {
     isolated_ = std::move(isolated);
   }
 
-  /** The view of \a camera in the coordinates of the render scene, without hidden objects. */
+  /**
+   * Show only what is on the side of \a planes_ws with dot(plane, (p, 1)) >= 0: draw::View::clip_planes, in world space
+   * of the scene. Takes effect with the next draw, which throws gpu::Error if they are more than 6 or not finite.
+   */
+  void set_clip_planes(std::vector<glm::dvec4> planes_ws)
+  {
+    clip_planes_ws_ = std::move(planes_ws);
+  }
+
+  /** The view of \a camera in the coordinates of the render scene, without what is left out. */
   [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;
   [[nodiscard]] const Settings &settings() const
   {
@@ -171,6 +180,7 @@ class SceneRenderer {
   Settings settings_;
   std::vector<scene::Handle<scene::Node>> hidden_;
   std::vector<scene::Handle<scene::Node>> isolated_;
+  std::vector<glm::dvec4> clip_planes_ws_;
   /** The last sync succeeded, and settings and size have not changed since. */
   bool is_synced_ = false;
   /** Created by the first draw_within. */

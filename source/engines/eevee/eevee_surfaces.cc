@@ -98,6 +98,7 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
   const scene::Scene &scene = recording.scene.scene();
   const SurfaceInputs &inputs = recording.inputs;
   const Feature features = inputs.features;
+  const Feature clip = inputs.is_clipped ? Feature::ClipPlanes : Feature::None;
   const render_scene::RenderObject &object = recording.scene.object(first);
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
@@ -123,11 +124,14 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
                            (function.key != 0 ? lit_function_features : Feature::None);
   const bool is_transmissive = surface == MaterialClass::Transmissive;
   const bool is_deferred = depth_.is_deferred(scene, object);
+  const bool is_blended = render_scene::is_blended(scene, mesh);
   const gpu::Shader *lit_shader =
       is_deferred || (is_transmissive && !inputs.has_behind)
           ? nullptr
-          : &recording.shaders.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface)), function);
-  if (render_scene::is_blended(scene, mesh)) {
+          : &recording.shaders.get(device, ShaderId::Lit,
+                                   with_variant(lighting | feature_of(surface) | (is_blended ? clip : Feature::None)),
+                                   function);
+  if (is_blended) {
     kind.blend_shader = lit_shader;
     return kind;
   }
@@ -139,13 +143,13 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
     add_group(kind, recording, pass, shader, state | fixed, read, textures, recording.bind);
   };
   if (is_deferred) {
-    add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features), side, surface, {});
+    add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features | clip), side, surface, {});
   }
   else {
     draw::Pass &depth_pass = is_transmissive ? transmission_.depth_pass() : depth_.depth_pass(material.is_double_sided);
     const gpu::Shader &depth_shader =
         recording.shaders.get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth,
-                              mask_features(cut_out), alpha_function);
+                              mask_features(cut_out) | clip, alpha_function);
     add(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures);
   }
   if (lit_shader) {

@@ -36,6 +36,8 @@ struct SurfaceInputs {
   bool has_surfaces = false;
   /** Transmission::behind exists. Without it, nothing that transmits light is in the view, and its passes are empty. */
   bool has_behind = false;
+  /** The view has clip planes. */
+  bool is_clipped = false;
 
   bool operator==(const SurfaceInputs &) const = default;
 };

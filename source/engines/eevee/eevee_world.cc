@@ -59,8 +59,12 @@ void SceneWorld::sync_occlusion(const render_scene::RenderScene &scene, const Se
 {
   const bool is_sampled = settings.planned_sample_count() > 1;
   const bool is_traced = has_world_occlusion(settings, scene);
-  const OcclusionKey key{scene.world_revision(), is_traced ? scene.objects().revision() : 0,
-                         is_traced ? scene.passes_revision() : 0, is_traced, is_sampled};
+  const OcclusionKey key{scene.world_revision(),
+                         is_traced ? scene.objects().revision() : 0,
+                         is_traced ? scene.passes_revision() : 0,
+                         is_traced ? scene.content_revision() : 0,
+                         is_traced,
+                         is_sampled};
   if (occlusion_key_ == key) {
     return;
   }

@@ -97,6 +97,7 @@ class SceneWorld {
     std::uint64_t world = 0;
     std::uint64_t objects = 0;
     std::uint64_t passes = 0;
+    std::uint64_t content = 0;
     bool is_traced = false;
     bool is_sampled = false;
 

@@ -45,7 +45,7 @@ draw::View view_of_region(const draw::View &view, glm::ivec2 size_px, const gpu:
   crop[1][1] = float(size_px.y) / part.y;
   crop[3][0] = offset.x;
   crop[3][1] = offset.y;
-  return {view.view_from_world(), crop * view.clip_from_view(), {}, view.hidden()};
+  return view.with_matrices(view.view_from_world(), crop * view.clip_from_view());
 }
 
 void Overlay::check_up_to_date() const
@@ -98,23 +98,47 @@ void Overlay::make(ObjectsTarget &target, glm::ivec2 size_px)
   target = std::move(made);
 }
 
+static Feature clip_feature(const draw::View &view)
+{
+  return view.clip_planes().empty() ? Feature::None : Feature::ClipPlanes;
+}
+
+void Overlay::write_view(const draw::View &view, const gpu::Rectangle &picture)
+{
+  gpu::Device &device = scene_.device();
+  if (!view_block_) {
+    view_block_ = device.create_buffer({"overlay_view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
+  }
+  shared::ViewData view_data{};
+  view_data.clip_from_world = view.clip_from_world();
+  device.update(view_block_, view_data);
+  if (view.clip_planes().empty()) {
+    return;
+  }
+  if (!clip_block_) {
+    clip_block_ = device.create_buffer({"overlay_clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
+  }
+  device.update(clip_block_, draw::clip_data(view, picture.size_px, picture.origin_px));
+}
+
 bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const IsDrawn &is_drawn, ObjectsTarget &target,
                              gpu::CommandList &list)
 {
   // Floats hold integers exactly up to here.
   constexpr draw::ObjectIndex object_max = 1U << 24U;
+  const gpu::Rectangle picture{glm::ivec2(0), size_px};
   draw::ObjectBuffer &objects = scene_.objects();
   if (objects.index_end() > object_max) {
     throw gpu::Error("overlay: {} objects are more than the {} that can be told apart", objects.index_end(),
                      object_max);
   }
-  gpu::Device &device = scene_.device();
   const scene::Scene &scene = scene_.scene();
   draw::Pass pass("overlay objects", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &objects);
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
   MaterialClass widest = MaterialClass::Plain;
+  const Feature clip = clip_feature(view);
   for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
     if (!objects.is_live(index) || !is_drawn(index) || !view.touches(objects.volume(index))) {
       continue;
@@ -130,12 +154,15 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
     widest = std::max(widest, cut_out);
     draw::ShadingGroup *&group = groups[{cut_out, state, textures}];
     if (!group) {
-      if (!view_block_) {
-        view_block_ = device.create_buffer({"overlay_view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
+      if (groups.size() == 1) {
+        write_view(view, picture);
       }
-      group = &pass.group(shader(ShaderId::Objects, mask_features(cut_out)));
+      group = &pass.group(shader(ShaderId::Objects, mask_features(cut_out) | clip));
       group->state_enable(state);
       group->bind_uniform("view_block", view_block_);
+      if (clip != Feature::None) {
+        group->bind_uniform("clip_block", clip_block_);
+      }
       group->bind_storage_ref("material_block", &material_block);
       group->bind_storage_ref("full_material_block", &full_material_block);
       render_scene::bind_textures(*group, scene_, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor,
@@ -149,11 +176,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   scene_.upload(widest);
   material_block = {scene_.materials().buffer().id()};
   full_material_block = {scene_.materials().full_buffer().id()};
-  shared::ViewData view_data{};
-  view_data.clip_from_world = view.clip_from_world();
-  device.update(view_block_, view_data);
   make(target, size_px);
-  const gpu::Rectangle picture{glm::ivec2(0), size_px};
   list.begin_pass("overlay objects", target.framebuffer, {.viewport = picture, .scissor = picture});
   pass.record(view, list);
   list.end_pass();

@@ -144,7 +144,7 @@ class Overlay {
     glm::dvec3 origin_ws{0.0};
     glm::ivec2 size_px{0};
     scene::Revision scene = 0;
-    std::uint64_t host_content = 0;
+    std::uint64_t content = 0;
     std::uint64_t loss_count = 0;
 
     bool operator==(const ObjectsKey &) const = default;
@@ -154,6 +154,8 @@ class Overlay {
   void check_up_to_date() const;
   const gpu::Shader &shader(ShaderId id, Feature features);
   void make(ObjectsTarget &target, glm::ivec2 size_px);
+  /** Write the blocks of passes that draw objects. \a picture: the viewport of the pass. */
+  void write_view(const draw::View &view, const gpu::Rectangle &picture);
   /**
    * Append a pass that draws the objects that \a view sees and \a is_drawn accepts into \a target.
    * \return whether there is anything
@@ -169,6 +171,8 @@ class Overlay {
   render_scene::RenderScene &scene_;
   std::map<std::pair<ShaderId, Feature>, std::shared_ptr<gpu::SharedShader>> shaders_;
   gpu::Buffer view_block_;
+  /** Empty until a view has clip planes. */
+  gpu::Buffer clip_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
   /** The objects of an outline. */

@@ -44,12 +44,8 @@ void check(std::span<const Line> lines)
 bool Overlay::update_hiding(const draw::View &view, glm::ivec2 size_px)
 {
   gpu::Device &device = scene_.device();
-  const ObjectsKey key{view,
-                       scene_.origin_ws(),
-                       size_px,
-                       scene_.scene().revision(),
-                       scene_.host_content_revision(),
-                       device.loss_count()};
+  const ObjectsKey key{
+      view, scene_.origin_ws(), size_px, scene_.scene().revision(), scene_.content_revision(), device.loss_count()};
   if (key != hiding_key_) {
     hiding_key_ = {};
     gpu::CommandList list;

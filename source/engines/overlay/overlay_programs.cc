@@ -7,8 +7,12 @@ namespace gnomon::overlay {
 
 namespace {
 
-constexpr std::array<Feature, 3> mask_variants = {Feature::None, Feature::AlphaMask,
-                                                  Feature::AlphaMask | Feature::FullMaterial};
+constexpr std::array<Feature, 6> mask_variants = {Feature::None,
+                                                  Feature::AlphaMask,
+                                                  Feature::AlphaMask | Feature::FullMaterial,
+                                                  Feature::ClipPlanes,
+                                                  Feature::AlphaMask | Feature::ClipPlanes,
+                                                  Feature::AlphaMask | Feature::FullMaterial | Feature::ClipPlanes};
 constexpr std::array<Feature, 1> one_variant = {Feature::None};
 constexpr std::array<Feature, 2> line_variants = {Feature::None, Feature::HiddenLines};
 
@@ -42,6 +46,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   }
   if ((features & Feature::HiddenLines) != Feature::None) {
     desc.defines.emplace_back("USE_HIDDEN_LINES");
+  }
+  if ((features & Feature::ClipPlanes) != Feature::None) {
+    desc.defines.emplace_back("USE_CLIP_PLANES");
   }
   return desc;
 }

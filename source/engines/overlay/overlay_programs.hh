@@ -20,6 +20,8 @@ enum class Feature : std::uint32_t {
   FullMaterial = 1U << 1,
   /** Objects hide lines. */
   HiddenLines = 1U << 2,
+  /** The view has clip planes. */
+  ClipPlanes = 1U << 3,
 };
 
 GNOMON_MASK_OPERATORS(Feature)

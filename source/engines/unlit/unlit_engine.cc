@@ -36,9 +36,9 @@ void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw
 
 }  // namespace
 
-static PictureKey picture_key(render_scene::RenderScene &scene, std::uint64_t settings)
+static PictureKey picture_key(render_scene::RenderScene &scene, std::uint64_t settings, const Data &data)
 {
-  return {.scene = scene.revision(), .settings = settings};
+  return {.scene = scene.revision(), .settings = settings, .display = data.display};
 }
 
 Engine::Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
@@ -60,6 +60,14 @@ const gpu::Shader &Engine::shader(gpu::Device &device, ShaderId id, Feature feat
     });
   }
   return shared->shader;
+}
+
+void Engine::set_display(draw::Viewport &viewport, const Display &display)
+{
+  if (display.is_wireframe && !viewport.device().limits().has_wireframe) {
+    throw gpu::Error("unlit: the device draws no edges of triangles: its Vulkan has no fillModeNonSolid");
+  }
+  viewport.engine_data<Data>(*this).display = display;
 }
 
 void Engine::init(draw::Viewport &viewport)
@@ -93,7 +101,7 @@ void Engine::cache_finish(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   data.is_collecting = false;
-  const PictureKey picture = picture_key(scene_, settings_revision_);
+  const PictureKey picture = picture_key(scene_, settings_revision_, data);
   if (data.synced_picture != picture) {
     data.synced_picture = picture;
     viewport.scene_changed();
@@ -111,7 +119,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
         "unlit: the scene was edited since the last update: call RenderScene::update and "
         "draw::Viewport::sync before draw");
   }
-  if (data.synced_picture != picture_key(scene_, settings_revision_)) {
+  if (data.synced_picture != picture_key(scene_, settings_revision_, data)) {
     throw gpu::Error(
         "unlit: the scene or the settings changed since the last sync of the viewport: call "
         "draw::Viewport::sync before draw");
@@ -169,10 +177,20 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   gpu::CommandList list;
   gpu::FramebufferStack stack(list);
   DepthKey depth{
-      scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), scene_.host_content_revision(), {}};
+      scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), scene_.content_revision(), {}};
   bool is_depth_drawn = false;
   if (data.is_seen) {
     update_depth_camera(device, data.objects);
+    if (view.clip_planes().empty()) {
+      data.clip_block = {};
+    }
+    else {
+      if (!data.clip_block) {
+        data.clip_block =
+            device.create_buffer({"unlit_clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
+      }
+      device.update(data.clip_block, draw::clip_data(view, viewport.drawn_size_px()));
+    }
     record(data, device);
     update_view_block(device, data.view_block, view);
     if (depth_camera_) {

@@ -27,6 +27,16 @@ struct Settings {
   glm::ivec2 depth_size_px{1024, 1024};
 };
 
+/** How a viewport shows surfaces. */
+struct Display {
+  /** The edges of all triangles, from both sides, instead of surfaces. Only nearer edges hide them. */
+  bool is_wireframe = false;
+  /** Surfaces, or edges, hide half of what is behind them. As blended surfaces, they have no depth. */
+  bool is_xray = false;
+
+  bool operator==(const Display &) const = default;
+};
+
 struct Data;
 
 /**
@@ -52,6 +62,12 @@ class Engine final : public draw::Engine {
     settings_ = settings;
     settings_revision_++;
   }
+
+  /**
+   * Set how \a viewport shows surfaces. Takes effect with its next sync. \throws gpu::Error for a wireframe if the
+   * device has none (gpu::Limits::has_wireframe)
+   */
+  void set_display(draw::Viewport &viewport, const Display &display);
 
   [[nodiscard]] std::string_view name() const override
   {

@@ -54,6 +54,8 @@ struct PassesKey {
   std::uint64_t settings = 0;
   std::uint64_t losses = 0;
   gpu::ResourceId depth_texture = 0;
+  bool is_clipped = false;
+  Display display{};
 
   bool operator==(const PassesKey &) const = default;
 };
@@ -62,6 +64,7 @@ struct PassesKey {
 struct PictureKey {
   std::uint64_t scene = 0;
   std::uint64_t settings = 0;
+  Display display{};
 
   bool operator==(const PictureKey &) const = default;
 };
@@ -71,7 +74,7 @@ struct DepthKey {
   std::uint64_t objects = 0;
   std::uint64_t passes = 0;
   std::uint64_t losses = 0;
-  std::uint64_t host_content = 0;
+  std::uint64_t content = 0;
   draw::View view;
 
   bool operator==(const DepthKey &) const = default;
@@ -92,6 +95,7 @@ struct Data final : draw::EngineViewportData {
     radiance = {};
   }
 
+  Display display{};
   std::vector<draw::ObjectIndex> objects;
   /** True between cache_init and cache_finish. */
   bool is_collecting = false;
@@ -106,6 +110,8 @@ struct Data final : draw::EngineViewportData {
   gpu::Texture radiance;
   gpu::Framebuffer framebuffer;
   gpu::Buffer view_block;
+  /** Empty unless the view has clip planes. */
+  gpu::Buffer clip_block;
   gpu::Sampler nearest;
   SceneBlocks blocks;
   std::optional<draw::Pass> surfaces;

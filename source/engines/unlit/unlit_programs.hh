@@ -20,6 +20,10 @@ enum class Feature : std::uint32_t {
   AlphaMask = 1U << 2,
   DepthCamera = 1U << 3,
   TargetDepth = 1U << 4,
+  /** The view has clip planes. */
+  ClipPlanes = 1U << 5,
+  /** Display::is_xray. */
+  XRay = 1U << 6,
 };
 
 GNOMON_MASK_OPERATORS(Feature)

@@ -20,7 +20,9 @@ void Engine::record(Data &data, gpu::Device &device)
                       .passes = scene_.passes_revision(),
                       .settings = settings_revision_,
                       .losses = device.loss_count(),
-                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
+                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0,
+                      .is_clipped = bool(data.clip_block),
+                      .display = data.display};
   if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
     data.recorded = {};
     record_surfaces(data, device);
@@ -56,16 +58,23 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
     data.widest = std::max(data.widest, surface);
     data.is_mirrored[index] = scene_.objects().is_mirrored(index);
     const bool is_receiver = depth_camera_ && object.receives_shadow;
-    const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
-    const State fixed =
-        (data.is_mirrored[index] ? State::FrontClockwise : State::None) | render_scene::topology_state(mesh.topology);
+    const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None) |
+                             (data.clip_block ? Feature::ClipPlanes : Feature::None) |
+                             (data.display.is_xray ? Feature::XRay : Feature::None);
+    const bool is_wireframe = data.display.is_wireframe && mesh.topology == scene::Topology::Triangles;
+    const State fixed = (data.is_mirrored[index] ? State::FrontClockwise : State::None) |
+                        render_scene::topology_state(mesh.topology) | (is_wireframe ? State::Wireframe : State::None);
     const bool is_double_sided = scene.material_of(mesh).is_double_sided;
+    const State side = is_double_sided || is_wireframe ? State::None : State::CullBack;
     const render_scene::TextureSet textures = render_scene::textures_of(scene, mesh, surface);
     const gpu::Batch &batch = scene_.batch(object.mesh, render_scene::streams_of(surface));
     const auto make_group = [&](draw::Pass &pass, State state) -> draw::ShadingGroup & {
       draw::ShadingGroup &group = pass.group(shader(device, ShaderId::Surface, features));
       group.state_enable(state);
       group.bind_uniform("view_block", data.view_block);
+      if (data.clip_block) {
+        group.bind_uniform("clip_block", data.clip_block);
+      }
       data.blocks.bind(group);
       render_scene::bind_textures(group, scene_, surface, textures);
       if (is_receiver) {
@@ -75,18 +84,19 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
       }
       return group;
     };
-    if (render_scene::lets_light_through(scene, mesh)) {
+    if (data.display.is_xray || render_scene::lets_light_through(scene, mesh)) {
       BlendedObject &blended = data.blended.emplace_back(BlendedObject{index, blended_group_count, 1});
       // The backs of a convex object are behind its fronts. Points and lines have no sides.
-      if (is_double_sided && mesh.topology == scene::Topology::Triangles) {
+      const bool has_two_groups = is_double_sided && !is_wireframe && mesh.topology == scene::Topology::Triangles;
+      if (has_two_groups) {
         make_group(*data.blended_surfaces, fixed | State::CullFront).call(batch, index);
         blended.group_count++;
       }
-      make_group(*data.blended_surfaces, fixed | State::CullBack).call(batch, index);
+      make_group(*data.blended_surfaces, fixed | (has_two_groups ? State::CullBack : side)).call(batch, index);
       blended_group_count += blended.group_count;
       continue;
     }
-    const State state = fixed | (is_double_sided ? State::None : State::CullBack);
+    const State state = fixed | side;
     draw::ShadingGroup *&group = groups[{features, state, textures}];
     if (!group) {
       group = &make_group(*data.surfaces, state);

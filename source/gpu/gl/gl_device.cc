@@ -95,6 +95,7 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
     : Device(query_limits(), desc.sink, desc.shader_cache_folder),
       context_(std::move(context)),
       is_debug_(desc.is_debug && context_),
+      has_pass_groups_(context_ || epoxy_has_gl_extension("GL_EXT_debug_tool")),
       host_state_(!context_)
 {
   const Calls calls(*this);
@@ -107,6 +108,7 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
   glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timestamp_bits_);
   create_vertex_arrays();
   glCreateFramebuffers(1, &other_framebuffer_);
+  label(GL_FRAMEBUFFER, other_framebuffer_, "copies");
 }
 
 GlDevice::~GlDevice()
@@ -188,6 +190,7 @@ GlDevice::VertexArray GlDevice::create_instanced_array()
 void GlDevice::create_vertex_arrays()
 {
   shared_array_ = create_instanced_array();
+  label(GL_VERTEX_ARRAY, shared_array_.name, "batches");
   // grow_pools() enables the attribute of a stream when the first batch has that stream.
   for (const VertexFormat &format : vertex_formats()) {
     const auto [type, is_normalized] = gl_vertex_type(format.type);
@@ -195,6 +198,7 @@ void GlDevice::create_vertex_arrays()
   }
   // Procedural draws need a vertex array, too, but one that does not read the attributes of batches.
   glCreateVertexArrays(1, &empty_vertex_array_);
+  label(GL_VERTEX_ARRAY, empty_vertex_array_, "procedural");
 }
 
 void GlDevice::finish()
@@ -214,7 +218,10 @@ void GlDevice::time_mark(ResourceId query, bool is_end)
     // So that they do not grow in number if nobody takes the times.
     read_times(timer, false);
     if (timer.unused.empty()) {
-      glCreateQueries(GL_TIMESTAMP, 2, timer.unused.emplace_back().data());
+      const auto &marks = timer.unused.emplace_back();
+      glCreateQueries(GL_TIMESTAMP, 2, timer.unused.back().data());
+      label(GL_QUERY, marks[0], timer.name + " begin");
+      label(GL_QUERY, marks[1], timer.name + " end");
     }
     timer.pending.push_back(timer.unused.back());
     timer.unused.pop_back();

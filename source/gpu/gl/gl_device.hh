@@ -83,6 +83,7 @@ class GlDevice final : public Device {
   /** The names of two timestamp queries: at the begin and at the end. */
   using TimeMarks = std::array<GLuint, 2>;
   struct Timer {
+    std::string name;
     /** Marked, oldest first, and not read yet. The last one may lack its end. */
     std::vector<TimeMarks> pending;
     std::vector<TimeMarks> unused;
@@ -118,6 +119,7 @@ class GlDevice final : public Device {
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
+  void batch_update(std::uint32_t first_vertex, const BatchDesc &values) override;
   void host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch) override;
   void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;
@@ -168,6 +170,7 @@ class GlDevice final : public Device {
   [[nodiscard]] const GlFramebuffer &framebuffer_of(const CommandList::PassInfo &pass);
   /** In builds with assertions, \throws Error if the host's framebuffer cannot be drawn into. */
   void check_host_framebuffer(std::string_view pass_name, const CommandList::PassInfo &pass);
+  void set_wireframe(bool is_wireframe);
   void set_state(State state);
   void bind_range(const Command &command);
   void bind_texture(const Command &command);
@@ -189,6 +192,13 @@ class GlDevice final : public Device {
   const void *const made_in_ = current_context();
   /** Whether the driver reports errors as debug messages. Always false in a host's context. */
   bool is_debug_;
+  /**
+   * Passes are debug groups: in a context of the device, and where a debugger such as RenderDoc asks for them. A host
+   * would get a message for each.
+   */
+  bool has_pass_groups_;
+  /** State::Wireframe of the last draws of the pass. */
+  bool is_wireframe_ = false;
   std::vector<std::string> driver_errors_;
   HostState host_state_;
   /** Errors of OpenGL that the host had pending when the outermost scope began. */

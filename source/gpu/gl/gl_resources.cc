@@ -238,6 +238,7 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
     if (sizes[i] > pool_size_[i]) {
       glCreateBuffers(1, &grown[i]);
       glNamedBufferData(grown[i], GLsizeiptr(sizes[i]), nullptr, GL_STATIC_DRAW);
+      label(GL_BUFFER, grown[i], i == index_pool ? "indices" : std::string(to_string(VertexStream(i))));
     }
   }
   // Replace the old buffers only after all new buffers were created successfully.
@@ -308,6 +309,18 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
   check(fmt::format("batch '{}'", desc.name));
 }
 
+void GlDevice::batch_update(std::uint32_t first_vertex, const BatchDesc &values)
+{
+  const Calls calls(*this);
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const std::span<const std::byte> bytes = values.bytes(VertexStream(i));
+    if (!bytes.empty()) {
+      glNamedBufferSubData(pool_[i], GLintptr(first_vertex) * GLintptr(vertex_formats()[i].size_bytes),
+                           GLsizeiptr(bytes.size()), bytes.data());
+    }
+  }
+}
+
 void GlDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
   const Calls calls(*this);
@@ -345,14 +358,16 @@ void GlDevice::host_batch_create(ResourceId id, const std::string &name, const H
     constexpr std::array<float, 8> values = {0, 0, 0, 0, 1, 1, 1, 1};
     glCreateBuffers(1, &absent_streams_);
     glNamedBufferStorage(absent_streams_, sizeof(values), values.data(), 0);
+    label(GL_VERTEX_ARRAY, host_array_.name, "batches of the host");
+    label(GL_BUFFER, absent_streams_, "absent streams");
   }
   check(fmt::format("batch '{}'", name));
   host_batches_.insert(id, batch);
 }
 
-void GlDevice::timer_query_create(ResourceId id, const std::string & /*name*/)
+void GlDevice::timer_query_create(ResourceId id, const std::string &name)
 {
-  timers_.insert(id, {});
+  timers_.insert(id, {.name = name});
 }
 
 void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)

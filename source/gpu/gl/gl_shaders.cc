@@ -203,6 +203,7 @@ const GlDevice::Dummy &GlDevice::dummy(const DeclaredSampler &sampler)
   }
   label(GL_TEXTURE, one.texture, "unbound");
   glCreateSamplers(1, &one.sampler);
+  label(GL_SAMPLER, one.sampler, "unbound");
   glSamplerParameteri(one.sampler, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glSamplerParameteri(one.sampler, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   if (sampler.is_comparison) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <string_view>
 
 namespace gnomon::gpu {
 
@@ -33,6 +34,8 @@ void StreamRing::grow(std::size_t size_bytes)
   GLuint grown = 0;
   glCreateBuffers(1, &grown);
   glNamedBufferStorage(grown, total_bytes, nullptr, access);
+  constexpr std::string_view name = "stream";
+  glObjectLabel(GL_BUFFER, grown, GLsizei(name.size()), name.data());
   auto *mapped = static_cast<std::byte *>(glMapNamedBufferRange(grown, 0, total_bytes, access));
   if (!mapped) {
     glDeleteBuffers(1, &grown);

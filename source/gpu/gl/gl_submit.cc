@@ -248,7 +248,7 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
     check_host_framebuffer(name, pass);
   }
   const GlFramebuffer &framebuffer = framebuffer_of(pass);
-  if (is_debug_) {
+  if (has_pass_groups_) {
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(name.size(), 255)), name.data());
   }
   pass_ = &pass;
@@ -339,14 +339,23 @@ void GlDevice::end_pass()
   if (!discarded.empty() && !pass_->host_framebuffer) {
     glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
   }
-  if (is_debug_) {
+  set_wireframe(false);
+  if (has_pass_groups_) {
     glPopDebugGroup();
   }
   pass_ = nullptr;
 }
 
+void GlDevice::set_wireframe(bool is_wireframe)
+{
+  if (std::exchange(is_wireframe_, is_wireframe) != is_wireframe) {
+    glPolygonMode(GL_FRONT_AND_BACK, is_wireframe ? GL_LINE : GL_FILL);
+  }
+}
+
 void GlDevice::set_state(State state)
 {
+  set_wireframe(has(state, State::Wireframe));
   primitive_ = has(state, State::DrawPoints) ? GL_POINTS : has(state, State::DrawLines) ? GL_LINES : GL_TRIANGLES;
   glDepthMask(GLboolean(has(state, State::WriteDepth)));
   // OpenGL writes depth only if the depth test is enabled, so GL_ALWAYS is used to write without a test.

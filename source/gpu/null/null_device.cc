@@ -57,6 +57,10 @@ class NullDevice final : public Device {
   {
     before("create batch");
   }
+  void batch_update(std::uint32_t /*first_vertex*/, const BatchDesc & /*values*/) override
+  {
+    before("update batch");
+  }
   void host_batch_create(ResourceId /*id*/, const std::string & /*name*/, const HostBatch & /*batch*/) override
   {
     before("create host batch");

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <utility>
@@ -246,7 +247,10 @@ void VulkanContext::load_instance()
   }
   GNOMON_VULKAN_INSTANCE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
-  // Functions of extensions that only devices with a window enable. Otherwise, they are null.
+  // Functions of extensions that not all instances enable. Otherwise, they are null.
+  set_object_name_ = instance_function<PFN_vkSetDebugUtilsObjectNameEXT>("vkSetDebugUtilsObjectNameEXT");
+  begin_label_ = instance_function<PFN_vkCmdBeginDebugUtilsLabelEXT>("vkCmdBeginDebugUtilsLabelEXT");
+  end_label_ = instance_function<PFN_vkCmdEndDebugUtilsLabelEXT>("vkCmdEndDebugUtilsLabelEXT");
 #define GNOMON_VULKAN_LOAD(NAME) surfaces.NAME = instance_function<PFN_##NAME>(#NAME);
   GNOMON_VULKAN_SURFACE_FUNCTIONS(GNOMON_VULKAN_LOAD)
 #undef GNOMON_VULKAN_LOAD
@@ -322,6 +326,10 @@ void VulkanContext::create_instance(bool is_debug)
     info.ppEnabledLayerNames = &validation_layer;
     extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   }
+  // RenderDoc and other layers show names. They offer the extension where no driver does.
+  else if (std::getenv("ENABLE_VULKAN_RENDERDOC_CAPTURE") || std::getenv("VK_INSTANCE_LAYERS")) {
+    extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  }
   if (window_) {
     std::uint32_t count = 0;
     const char **names = glfwGetRequiredInstanceExtensions(&count);
@@ -349,7 +357,6 @@ void VulkanContext::create_instance(bool is_debug)
     check(instance_function<PFN_vkCreateDebugUtilsMessengerEXT>("vkCreateDebugUtilsMessengerEXT")(instance_, &messenger,
                                                                                                   nullptr, &messenger_),
           "Vulkan");
-    set_object_name_ = instance_function<PFN_vkSetDebugUtilsObjectNameEXT>("vkSetDebugUtilsObjectNameEXT");
   }
 }
 
@@ -445,6 +452,7 @@ void VulkanContext::create_device()
     *feature.value = VK_TRUE;
   }
   used.core.features.geometryShader = present.core.features.geometryShader;
+  used.core.features.fillModeNonSolid = present.core.features.fillModeNonSolid;
   used.core.features.samplerAnisotropy = present.core.features.samplerAnisotropy;
   used.v12.shaderOutputLayer = present.v12.shaderOutputLayer;
 
@@ -475,6 +483,7 @@ void VulkanContext::create_device()
 void VulkanContext::describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output)
 {
   has_geometry_shader = enabled.geometryShader == VK_TRUE;
+  has_wireframe = enabled.fillModeNonSolid == VK_TRUE;
   has_anisotropy = enabled.samplerAnisotropy == VK_TRUE;
   has_vertex_layer = has_layer_output;
   timestamp_bits = int(queue_families(instance, physical_device)[queue_family].timestampValidBits);
@@ -544,6 +553,22 @@ void VulkanContext::label_object(VkObjectType type, std::uint64_t handle, const 
     const VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type, handle,
                                              name.c_str()};
     set_object_name_(device, &info);
+  }
+}
+
+void VulkanContext::begin_label(VkCommandBuffer commands, std::string_view name) const
+{
+  if (begin_label_) {
+    const std::string text(name);
+    const VkDebugUtilsLabelEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, nullptr, text.c_str(), {}};
+    begin_label_(commands, &info);
+  }
+}
+
+void VulkanContext::end_label(VkCommandBuffer commands) const
+{
+  if (end_label_) {
+    end_label_(commands);
   }
 }
 

@@ -45,6 +45,7 @@ class VulkanContext {
   VkPhysicalDeviceLimits limits{};
   bool is_software = false;
   bool has_geometry_shader = false;
+  bool has_wireframe = false;
   bool has_vertex_layer = false;
   bool has_anisotropy = false;
   /** Version, names of the device and the driver. */
@@ -78,6 +79,9 @@ class VulkanContext {
   {
     label_object(type, (std::uint64_t)(handle), name);
   }
+  /** Names the commands until end_label() in debuggers. */
+  void begin_label(VkCommandBuffer commands, std::string_view name) const;
+  void end_label(VkCommandBuffer commands) const;
 
  private:
   static VkBool32 VKAPI_PTR receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
@@ -115,8 +119,10 @@ class VulkanContext {
   std::function<void()> lock_queue_;
   std::function<void()> unlock_queue_;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-  /** nullptr: the device has no validation layers. */
+  /** nullptr: the instance is made without VK_EXT_debug_utils. */
   PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
+  PFN_vkCmdBeginDebugUtilsLabelEXT begin_label_ = nullptr;
+  PFN_vkCmdEndDebugUtilsLabelEXT end_label_ = nullptr;
   bool is_lost_ = false;
   /** The layers may report on any thread that calls Vulkan. */
   std::mutex messages_mutex_;

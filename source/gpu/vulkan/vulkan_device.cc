@@ -35,6 +35,7 @@ Limits limits_of(const VulkanContext &context)
       int(std::min(of.maxVertexOutputComponents, of.maxFragmentInputComponents) / components_of_location);
   limits.has_vertex_layer = context.has_vertex_layer;
   limits.has_geometry_shader = context.has_geometry_shader;
+  limits.has_wireframe = context.has_wireframe;
   limits.has_specialization = true;
   return limits;
 }
@@ -182,6 +183,7 @@ void VulkanDevice::time_mark(ResourceId query, bool is_end)
       info.queryCount = 2;
       TimeMarks marks;
       context_->check(context_->vk.vkCreateQueryPool(context_->device, &info, nullptr, &marks.queries), "timer");
+      context_->label(VK_OBJECT_TYPE_QUERY_POOL, marks.queries, timer.name);
       timer.unused.push_back(marks);
     }
     timer.pending.push_back(timer.unused.back());

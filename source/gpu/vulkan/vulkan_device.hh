@@ -94,6 +94,7 @@ class VulkanDevice final : public Device {
     std::uint64_t number = 0;
   };
   struct Timer {
+    std::string name;
     /** Marked, oldest first, and not read yet. The last one may lack its end. */
     std::vector<TimeMarks> pending;
     std::vector<TimeMarks> unused;
@@ -161,6 +162,7 @@ class VulkanDevice final : public Device {
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
+  void batch_update(std::uint32_t first_vertex, const BatchDesc &values) override;
   void host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch) override;
   void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;

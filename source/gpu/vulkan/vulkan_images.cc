@@ -96,6 +96,7 @@ VkImageView make_view(VulkanContext &context, std::string_view what, const Vulka
   info.subresourceRange = range;
   VkImageView view = VK_NULL_HANDLE;
   context.check(context.vk.vkCreateImageView(context.device, &info, nullptr, &view), what);
+  context.label(VK_OBJECT_TYPE_IMAGE_VIEW, view, std::string(what));
   return view;
 }
 

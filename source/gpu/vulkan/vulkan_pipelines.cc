@@ -105,7 +105,7 @@ VkFormat vertex_format(int component_count, VertexType type)
 std::uint32_t pipeline_state(State state)
 {
   constexpr State kept = State::WriteColor | State::BlendAdd | State::BlendMultiply | State::BlendOver |
-                         State::DepthClamp | State::DrawLines | State::DrawPoints;
+                         State::DepthClamp | State::DrawLines | State::DrawPoints | State::Wireframe;
   return std::uint32_t(state) & std::uint32_t(kept);
 }
 
@@ -152,6 +152,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
     made.stage = vulkan_stage(stage.stage);
     made.pName = "main";
     context_.check(context_.vk.vkCreateShaderModule(context_.device, &info, nullptr, &made.module), what);
+    context_.label(VK_OBJECT_TYPE_SHADER_MODULE, made.module, name_);
     Constants &set = constants_.emplace_back();
     for (const StageConstant &constant : constants) {
       if (constant.stage == stage.stage) {
@@ -176,6 +177,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
   set.bindingCount = std::uint32_t(bindings.size());
   set.pBindings = bindings.data();
   context_.check(context_.vk.vkCreateDescriptorSetLayout(context_.device, &set, nullptr, &set_layout_), what);
+  context_.label(VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, set_layout_, name_);
   // The same range in all programs, so that push constants stay when another program is bound.
   const VkPushConstantRange range{VK_SHADER_STAGE_ALL_GRAPHICS, 0, push_constant_bytes};
   VkPipelineLayoutCreateInfo layout{};
@@ -185,6 +187,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
   layout.pushConstantRangeCount = 1;
   layout.pPushConstantRanges = &range;
   context_.check(context_.vk.vkCreatePipelineLayout(context_.device, &layout, nullptr, &layout_), what);
+  context_.label(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout_, name_);
 }
 
 VkPipeline VulkanProgram::pipeline(const PipelineKey &key)
@@ -231,6 +234,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   rasterization.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
   rasterization.pNext = &provoking;
   rasterization.depthClampEnable = has(state, State::DepthClamp) ? VK_TRUE : VK_FALSE;
+  rasterization.polygonMode = has(state, State::Wireframe) ? VK_POLYGON_MODE_LINE : VK_POLYGON_MODE_FILL;
   rasterization.lineWidth = 1.0F;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
@@ -277,6 +281,7 @@ VkPipeline VulkanProgram::make(const PipelineKey &key)
   VkPipeline pipeline = VK_NULL_HANDLE;
   context_.check(context_.vk.vkCreateGraphicsPipelines(context_.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
                  fmt::format("shader '{}'", name_));
+  context_.label(VK_OBJECT_TYPE_PIPELINE, pipeline, name_);
   return pipeline;
 }
 

@@ -77,6 +77,7 @@ void VulkanDevice::texture_create(ResourceId id, const TextureDesc &desc)
       memory_.destroy(texture.buffer);
       context_->check(result, what);
     }
+    context_->label(VK_OBJECT_TYPE_BUFFER_VIEW, texture.buffer_view, desc.name);
   }
   else {
     texture.image = make_image(*context_, memory_, what, desc, vulkan_format(desc.format));
@@ -125,6 +126,7 @@ VkSampler VulkanDevice::make_sampler(std::string_view what, const VkSamplerCreat
 {
   VkSampler sampler = VK_NULL_HANDLE;
   context_->check(context_->vk.vkCreateSampler(context_->device, &info, nullptr, &sampler), what);
+  context_->label(VK_OBJECT_TYPE_SAMPLER, sampler, std::string(what));
   return sampler;
 }
 
@@ -403,6 +405,14 @@ void VulkanDevice::batch_create(const BatchDesc &desc, const BatchRange &range, 
   check(fmt::format("batch '{}'", desc.name));
 }
 
+void VulkanDevice::batch_update(std::uint32_t first_vertex, const BatchDesc &values)
+{
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    write(pools_[i], VkDeviceSize(first_vertex) * vertex_formats()[i].size_bytes, values.bytes(VertexStream(i)));
+  }
+  finish_large_uploads();
+}
+
 void VulkanDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
   const std::string what = fmt::format("batch '{}'", name);
@@ -447,9 +457,9 @@ void VulkanDevice::shader_create(const Operation::CreateShader &create, std::vec
   check_made(ResourceKind::Shader, create.id, fmt::format("shader '{}'", create.desc.name));
 }
 
-void VulkanDevice::timer_query_create(ResourceId id, const std::string & /*name*/)
+void VulkanDevice::timer_query_create(ResourceId id, const std::string &name)
 {
-  timers_.insert(id, {});
+  timers_.insert(id, {.name = name});
 }
 
 void VulkanDevice::resource_destroy(ResourceKind kind, ResourceId id)

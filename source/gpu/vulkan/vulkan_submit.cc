@@ -248,6 +248,7 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
   }
   const PassActions &actions = pass.actions;
   VkCommandBuffer commands = submissions_.commands();
+  context_->begin_label(commands, name);
   prepare_lookups(framebuffer, actions, used);
   const bool is_encoded = actions.is_srgb_encoded;
   std::vector<VkRenderingAttachmentInfo> colors;
@@ -327,6 +328,7 @@ void VulkanDevice::copy_attachment(ResourceId id)
 void VulkanDevice::end_pass()
 {
   context_->vk.vkCmdEndRendering(submissions_.commands());
+  context_->end_label(submissions_.commands());
   list_.pass = nullptr;
 }
 

@@ -46,7 +46,7 @@ class RandomEditor {
 
   void edit()
   {
-    switch (below(15)) {
+    switch (below(16)) {
       case 0: add_object(); break;
       case 1: remove_one(objects_, 3); break;
       case 2: add_lamp(); break;
@@ -72,6 +72,7 @@ class RandomEditor {
       case 14:
         scene_.edit(pick(objects_), [&](scene::Node &node) { node.receives_shadow = !node.receives_shadow; });
         break;
+      case 15: edit_vertices(); break;
       default: break;
     }
   }
@@ -152,6 +153,14 @@ class RandomEditor {
         position *= float(uniform(0.97, 1.03));
       }
     });
+  }
+  void edit_vertices()
+  {
+    const Handle<scene::Mesh> mesh = pick(meshes_);
+    const std::vector<glm::vec3> &positions = scene_.meshes()[mesh].positions;
+    const auto vertex = std::uint32_t(below(positions.size()));
+    const glm::vec3 moved = positions[vertex] * float(uniform(0.9, 1.1));
+    scene_.set_vertices(mesh, {.vertices = std::span(&vertex, 1), .positions = std::span(&moved, 1)});
   }
   void edit_image()
   {

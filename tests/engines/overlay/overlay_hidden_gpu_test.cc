@@ -2,6 +2,7 @@
 // Nodes that one viewport leaves out and the scene keeps: draw::View::hidden in the engines and in overlays.
 #include "overlay.hh"
 
+#include "draw_target.hh"
 #include "engines/eevee/eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "gpu_read.hh"
@@ -9,6 +10,8 @@
 #include "unlit_engine.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
+
+#include <map>
 
 namespace gnomon::overlay {
 namespace {
@@ -216,6 +219,184 @@ TEST_F(HiddenNodesTest, OverlaysLeaveHiddenNodesOut)
   scene.remove(glass);
   shared.update();
   EXPECT_EQ(shared.hidden_objects(std::array{glass}), draw::ObjectSet());
+}
+
+/** The same scene, cut by planes. */
+class ClipPlanesTest : public HiddenNodesTest {
+ protected:
+  struct Pictures {
+    std::vector<glm::vec4> whole;
+    std::vector<glm::vec4> clipped;
+    std::vector<glm::vec4> whole_again;
+    std::uint64_t programs_made = 0;
+  };
+  draw::View view(const std::vector<glm::dvec4> &planes)
+  {
+    return render_scene::view_of(camera, size_px, shared->origin_ws()).with_clip_planes(shared->relative(planes));
+  }
+  /** Pictures of one engine without planes, with them, and without them. */
+  Pictures pictures(draw::Engine &engine, const std::vector<glm::dvec4> &planes)
+  {
+    draw::Engine *one = &engine;
+    draw::Viewport viewport(*device, size_px);
+    viewport.sync(std::span(&one, 1), shared->objects());
+    const auto drawn = [&](const draw::View &seen) {
+      const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, size_px);
+      draw::Target target = texture.target();
+      target.encoding = draw::Encoding::SceneLinear;
+      viewport.draw(std::span(&one, 1), seen, target);
+      return gpu::read_as<glm::vec4>(*device, texture.texture());
+    };
+    Pictures made;
+    made.whole = drawn(view({}));
+    const std::uint64_t programs = device->counters().shaders_made;
+    made.clipped = drawn(view(planes));
+    made.programs_made = device->counters().shaders_made - programs;
+    made.whole_again = drawn(view({}));
+    EXPECT_EQ(device->counters().shaders_made, programs + made.programs_made);
+    return made;
+  }
+  /** Calls \a test with each engine, for materials of both ways of lighting. */
+  template <typename Test>
+  void for_each_engine(Test &&test)
+  {
+    for (const bool is_textured : {false, true}) {
+      if (is_textured) {
+        const auto texture = test::add_texture(scene, 1, {200, 150, 100, 255});
+        const auto material = scene.meshes()[scene.nodes()[box].meshes.front()].material;
+        scene.edit(material, [&](scene::Material &one) { one.base_color_texture = texture; });
+      }
+      shared.emplace(*device, scene);
+      shared->update();
+      eevee::Engine eevee(*shared, eevee::Settings{.sample_count = 1});
+      unlit::Engine unlit(*shared);
+      for (draw::Engine *engine : std::array<draw::Engine *, 2>{&eevee, &unlit}) {
+        SCOPED_TRACE(fmt::format("{}{}", engine->name(), is_textured ? ", textured" : ""));
+        test(*engine);
+      }
+    }
+  }
+
+  std::optional<render_scene::RenderScene> shared;
+};
+
+TEST_F(ClipPlanesTest, EnginesAndPickingShowTheSamePartsOfSurfaces)
+{
+  scene.edit(glass, [](scene::Node &one) { one.is_visible = false; });
+  const std::vector<glm::dvec4> planes = {{0.8, 0, -0.6, 0.9}, {0, -1, 0, 0.8}};
+  // Above all planes by more than rounding; below one; between.
+  const auto side_of = [&](const glm::dvec3 &p) {
+    double least = 1.0;
+    for (const glm::dvec4 &plane : planes) {
+      least = std::min(least, glm::dot(plane, glm::dvec4(p, 1.0)));
+    }
+    return least > 1e-3 ? 1 : least < -1e-3 ? -1 : 0;
+  };
+  for_each_engine([&](draw::Engine &engine) {
+    const Pictures made = pictures(engine, planes);
+    EXPECT_EQ(made.whole_again, made.whole);
+    EXPECT_GT(made.programs_made, 0U);
+    Overlay overlay(*shared);
+    // What a pixel shows where no neighbour, which the pixel filter mixes in, shows anything else.
+    enum class Shown { Mixed, Nothing, Kept, Revealed, Emptied };
+    std::vector<Shown> shown;
+    for (int i = 0; i < size_px.x * size_px.y; i++) {
+      const glm::ivec2 pixel(i % size_px.x, i / size_px.x);
+      const std::optional<Hit> hit = overlay.pick(view({}), size_px, pixel);
+      const std::optional<Hit> clipped = overlay.pick(view(planes), size_px, pixel);
+      ASSERT_TRUE(!clipped || side_of(clipped->position_ws) >= 0) << pixel.x << ' ' << pixel.y;
+      const int side = hit ? side_of(hit->position_ws) : 1;
+      ASSERT_TRUE(!hit || side <= 0 || (clipped && clipped->node == hit->node)) << pixel.x << ' ' << pixel.y;
+      shown.push_back(side == 0  ? Shown::Mixed
+                      : !hit     ? Shown::Nothing
+                      : side > 0 ? Shown::Kept
+                      : clipped  ? Shown::Revealed
+                                 : Shown::Emptied);
+    }
+    std::map<Shown, int> counts;
+    for (int y = 2; y < size_px.y - 2; y++) {
+      for (int x = 2; x < size_px.x - 2; x++) {
+        const auto i = std::size_t(y * size_px.x + x);
+        bool is_alone = true;
+        for (int k = 0; k < 25; k++) {
+          is_alone &= shown[i + std::size_t((k / 5 - 2) * size_px.x + k % 5 - 2)] == shown[i];
+        }
+        if (!is_alone) {
+          continue;
+        }
+        counts[shown[i]]++;
+        if (shown[i] == Shown::Kept) {
+          ASSERT_EQ(made.clipped[i], made.whole[i]) << "also in the shadow of what is cut off: " << x << ' ' << y;
+        }
+        else if (shown[i] == Shown::Revealed) {
+          ASSERT_NEAR(made.clipped[i].a, 1.0F, 1e-5F) << x << ' ' << y;
+        }
+        else if (shown[i] == Shown::Emptied) {
+          ASSERT_EQ(made.clipped[i], glm::vec4(0.0F)) << x << ' ' << y;
+        }
+      }
+    }
+    EXPECT_GT(counts[Shown::Kept], 200);
+    EXPECT_GT(counts[Shown::Revealed], 2);
+    EXPECT_GT(counts[Shown::Emptied], 30);
+  });
+}
+
+TEST_F(ClipPlanesTest, CutBlendedSurfacesAndSelection)
+{
+  for_each_engine([&](draw::Engine &engine) {
+    // The square of glass reaches from 0.3 to 1.7, and nothing else to 0.2, but the floor.
+    const Pictures without_glass = pictures(engine, {{-1, 0, 0, 0.25}});
+    const Pictures half = pictures(engine, {{-1, 0, 0, 1.0}});
+    scene.edit(glass, [](scene::Node &one) { one.is_visible = false; });
+    shared->update();
+    EXPECT_EQ(pictures(engine, {{-1, 0, 0, 0.25}}).clipped, without_glass.clipped);
+    const Pictures no_glass = pictures(engine, {{-1, 0, 0, 1.0}});
+    scene.edit(glass, [](scene::Node &one) { one.is_visible = true; });
+    shared->update();
+    Overlay overlay(*shared);
+    int with_glass = 0;
+    for (std::size_t i = 0; i < half.clipped.size(); i++) {
+      const glm::ivec2 pixel(int(i) % size_px.x, int(i) / size_px.x);
+      const std::optional<Hit> hit = overlay.pick(view({{-1, 0, 0, 1.0}}), size_px, pixel);
+      const bool is_glass = hit && hit->node == glass;
+      // The pixel filter of eevee mixes neighbours in.
+      if (engine.name() == "unlit" || is_glass) {
+        EXPECT_EQ(half.clipped[i] != no_glass.clipped[i], is_glass) << pixel.x << ' ' << pixel.y;
+      }
+      with_glass += is_glass ? 1 : 0;
+    }
+    EXPECT_GT(with_glass, 30);
+  });
+  Overlay overlay(*shared);
+  const auto everywhere = rectangle({0, 0}, glm::dvec2(size_px));
+  EXPECT_EQ(overlay.select(view({{-1, 0, 0, 0.25}}), size_px, everywhere, Reach::Through), (Nodes{floor, box, child}));
+  EXPECT_EQ(overlay.select(view({{0, 1, 0, -0.85}}), size_px, everywhere, Reach::Through), Nodes{child});
+}
+
+TEST_F(ClipPlanesTest, DepthOfAPictureOfSeveralSamplesIsCutToo)
+{
+  eevee::SceneRenderer renderer(*device, scene, size_px, {.sample_count = 4});
+  renderer.sync();
+  const auto depths = [&](std::vector<glm::dvec4> planes) {
+    renderer.set_clip_planes(std::move(planes));
+    const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, size_px);
+    const gpu::Texture depth = device->create_texture(
+        {.name = "target_depth", .format = gpu::Format::Depth32F, .width = size_px.x, .height = size_px.y});
+    const gpu::Framebuffer framebuffer =
+        device->create_framebuffer({.name = "target_fb", .colors = {{&texture.texture()}}, .depth = {&depth}});
+    draw::Target target = texture.target();
+    target.framebuffer = &framebuffer;
+    target.depth = draw::HostDepth{.clip_from_view = renderer.view_of(camera).clip_from_view(), .is_zero_to_one = true};
+    renderer.draw(camera, {}, target);
+    return gpu::read_as<float>(*device, depth);
+  };
+  const std::vector<float> whole = depths({});
+  const std::vector<float> none = depths({{0, 0, 0, -1}});
+  EXPECT_EQ(std::ranges::count(none, none.front()), std::ptrdiff_t(none.size()));
+  EXPECT_GT(std::ranges::count_if(whole, [&](float depth) { return depth != none.front(); }), 500);
+  renderer.set_clip_planes(std::vector<glm::dvec4>(7));
+  EXPECT_THROW(renderer.draw(camera), gpu::Error);
 }
 
 }  // namespace

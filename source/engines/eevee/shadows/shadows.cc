@@ -65,7 +65,8 @@ static draw::View widened(const draw::View &view, float pixel_size)
 
 void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size, const PictureDepths &depths)
 {
-  const Seen seen{view.clip_from_world(), view.hidden(), pixel_size, reads_depths() && !depths.depths.empty()};
+  const Seen seen{view.clip_from_world(), view.hidden(), view.clip_planes(), pixel_size,
+                  reads_depths() && !depths.depths.empty()};
   if (seen_ == seen) {
     return;
   }

@@ -164,6 +164,7 @@ class Shadows {
   struct Seen {
     glm::mat4 clip_from_world{1.0F};
     draw::ObjectSet hidden{};
+    std::vector<glm::vec4> clip_planes{};
     float pixel_size = 0.0F;
     bool has_depths = false;
 
