@@ -62,6 +62,8 @@ struct Counters {
   std::uint64_t shaders_made = 0;
   /** Number of created shaders whose compiled form was loaded from the disk cache. Included in shaders_made. */
   std::uint64_t shaders_from_cache = 0;
+  /** Vulkan: combinations of a program with states and formats, each of which takes a part of its compilation. */
+  std::uint64_t pipelines_made = 0;
   std::uint64_t textures_made = 0;
   /** Bytes that the CPU has sent: writes to buffers, batches and textures, and the draws and instances of lists. */
   std::uint64_t upload_bytes = 0;
