@@ -7,14 +7,29 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <string>
 
 namespace gnomon::test {
 
-/** The backend of devices of tests: the environment variable GNOMON_TEST_BACKEND, `gl` (the default) or `vulkan`. */
+/**
+ * The backend of devices of tests: the environment variable GNOMON_TEST_BACKEND, `gl` (the default), `vulkan`, or
+ * `swiftshader`: Vulkan with SwiftShader, a second driver on the CPU.
+ */
 inline std::string testing_backend()
 {
   const char *backend = std::getenv("GNOMON_TEST_BACKEND");
   return backend && *backend ? backend : "gl";
+}
+
+/** The description of SwiftShader for the loader of Vulkan. \throws Error if scripts/setup did not unpack it */
+inline std::string swiftshader_driver()
+{
+  const std::string path = GNOMON_SOURCE "/build/swiftshader/vk_swiftshader_icd.json";
+  if (!std::filesystem::exists(path)) {
+    throw gpu::Error("there is no {}, which scripts/setup unpacks", path);
+  }
+  return path;
 }
 
 /** \throws Error. Messages of Vulkan's validation layers are errors, or failures where they come from a destructor. */
@@ -23,8 +38,11 @@ inline std::unique_ptr<gpu::Device> create_testing_device(const std::string &bac
   if (backend == "gl") {
     return gpu::create_gl_device({.is_debug = true});
   }
-  if (backend != "vulkan") {
-    throw gpu::Error("GNOMON_TEST_BACKEND is '{}', not 'gl' or 'vulkan'", backend);
+  if (backend == "swiftshader") {
+    setenv("VK_DRIVER_FILES", swiftshader_driver().c_str(), 1);
+  }
+  else if (backend != "vulkan") {
+    throw gpu::Error("GNOMON_TEST_BACKEND is '{}', not 'gl', 'vulkan' or 'swiftshader'", backend);
   }
   const auto sink = [](std::string_view message) {
     if (message.starts_with("Validation")) {

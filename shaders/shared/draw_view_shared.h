@@ -26,7 +26,8 @@ struct ViewData {
   float depth_origin;
   /**
    * In its xyz, vectors of world space across the view axis, at a distance of 1 from the eye (orthographic: at any). A pixel with the
-   * normalized device coordinates (x, y) is at place_middle + x * place_right + y * place_up.
+   * normalized device coordinates (x, y) is at place_middle + x * place_right + y * place_up. The fourth components of the last two are
+   * the width and the height of a pixel in these coordinates.
    */
   vec3 place_middle;
   /** In [0, 1), of the sample. \see eevee_mask_lib.glsl */

@@ -109,6 +109,7 @@ nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &sett
             {"shader_binds", c.shader_binds},
             {"shaders_made", c.shaders_made},
             {"shaders_from_cache", c.shaders_from_cache},
+            {"pipelines_made", c.pipelines_made},
             {"textures_made", c.textures_made},
             {"upload_bytes", c.upload_bytes}}},
           {"memory_bytes", result.memory_bytes},

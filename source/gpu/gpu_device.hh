@@ -268,6 +268,10 @@ class Device {
   }
   /** \throws Error unless can_execute() */
   void check_can_execute() const;
+  void count_pipeline()
+  {
+    counters_.pipelines_made++;
+  }
   /** Must be called by the destructor of the most derived class, whose backend functions free the resources. */
   void free_live_resources();
   void message(std::string_view text) const;

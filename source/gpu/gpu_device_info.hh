@@ -28,6 +28,12 @@ struct Limits {
   int anisotropy_max = 16;
   /** The driver draws on the CPU. Mesa's takes the time of each texel under a footprint for an anisotropic lookup. */
   bool is_software = false;
+  /**
+   * Vertices are moved to a grid with 2 to the power of this cells along a pixel's edge, and what is interpolated
+   * between them moves along. Read of devices of Vulkan, of which SwiftShader has 4; those of OpenGL are taken to have
+   * 8, which is common.
+   */
+  int subpixel_bits = 8;
   /** Alignment in bytes of BufferRange::offset_bytes, for uniform and storage blocks. */
   std::uint32_t uniform_offset_alignment = 256;
   /** Maximum numbers of resources that one stage of a program reads. */
@@ -64,6 +70,8 @@ struct Counters {
   std::uint64_t shaders_made = 0;
   /** Number of created shaders whose compiled form was loaded from the disk cache. Included in shaders_made. */
   std::uint64_t shaders_from_cache = 0;
+  /** Vulkan: combinations of a program with states and formats, each of which takes a part of its compilation. */
+  std::uint64_t pipelines_made = 0;
   std::uint64_t textures_made = 0;
   /** Bytes that the CPU has sent: writes to buffers, batches and textures, and the draws and instances of lists. */
   std::uint64_t upload_bytes = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the tests of all backends do not show of Vulkan's. These need no GNOMON_TEST_BACKEND.
 #include "gpu/gpu_testing.hh"
+#include "gpu/gpu_weak_barrier.hh"
 #include "gpu_device_fixture.hh"
 
 #include "gpu_swapchain.hh"
@@ -384,16 +385,7 @@ struct WeakBarrier {
       return;
     }
     is_weak_first = was_first;
-    VkDependencyInfo weakened = *info;
-    std::vector<VkImageMemoryBarrier2> images(info->pImageMemoryBarriers,
-                                              info->pImageMemoryBarriers + info->imageMemoryBarrierCount);
-    for (VkImageMemoryBarrier2 &image : images) {
-      image.srcStageMask = image.dstStageMask = VK_PIPELINE_STAGE_2_NONE;
-      image.srcAccessMask = image.dstAccessMask = VK_ACCESS_2_NONE;
-    }
-    weakened.memoryBarrierCount = 0;
-    weakened.pImageMemoryBarriers = images.data();
-    real(commands, &weakened);
+    test::record_weak_barrier(real, commands, *info);
   }
 };
 

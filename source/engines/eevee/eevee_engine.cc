@@ -158,13 +158,14 @@ void Engine::begin_draw(draw::Viewport &viewport)
 }
 
 /** Update the blocks that all passes of a sample read. */
-void Engine::update_view(Data &data, const draw::View &view)
+void Engine::update_view(const draw::Viewport &viewport, Data &data, const draw::View &view)
 {
   if (data.buffers.clip_block) {
     scene_.device().update(data.buffers.clip_block, draw::clip_data(view, data.buffers.main_fb.size_px()));
   }
   data.shared->materials.follow(scene_);
-  scene_.device().update(data.buffers.view_block, view_data(view, settings_, data.sample_index, scene_.bounds()));
+  scene_.device().update(data.buffers.view_block,
+                         view_data(view, viewport, settings_, data.sample_index, scene_.bounds()));
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
@@ -225,7 +226,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
       data.visible.update(sample_view, scene_.objects());
     }
     data.blend.order(scene_, sample_view, data.visible, data.materials.transmissive, data.is_transmission_seen);
-    update_view(data, sample_view);
+    update_view(viewport, data, sample_view);
   }
   // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible,
   // unless the means of converged pixels must follow.

@@ -126,7 +126,7 @@ class Engine final : public draw::Engine {
   /** \return false if only the steps for the device's feedback were drawn, because the feedback changes the picture. */
   bool draw_sample(draw::Viewport &viewport, const draw::View &view);
   void draw_target(draw::Viewport &viewport, const draw::View &view);
-  void update_view(Data &data, const draw::View &view);
+  void update_view(const draw::Viewport &viewport, Data &data, const draw::View &view);
 
   render_scene::RenderScene &scene_;
   Settings settings_;

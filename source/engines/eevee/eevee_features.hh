@@ -64,6 +64,8 @@ enum class Feature : std::uint32_t {
    * as LampHighlights is of those with LampShape.
    */
   WorldOcclusion = 1U << 21,
+  /** The device moves vertices to a coarse grid (gpu::Limits::subpixel_bits). A constant of the G-buffer's program. */
+  CoarseGrid = 1U << 22,
 };
 
 GNOMON_MASK_OPERATORS(Feature)
@@ -72,7 +74,7 @@ GNOMON_MASK_OPERATORS(Feature)
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
 /** Constants of programs. They select no variant. */
-inline constexpr Feature program_constants = Feature::LampHighlights | Feature::WorldOcclusion;
+inline constexpr Feature program_constants = Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid;
 
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)

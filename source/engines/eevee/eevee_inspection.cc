@@ -63,7 +63,7 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
   const draw::View sample_view = inspected_view(data, view, viewport_, engine_.settings_, sample);
-  engine_.update_view(data, sample_view);
+  engine_.update_view(viewport_, data, sample_view);
   gpu::CommandList list;
   SharedData &shared = *data.shared;
   if (sample) {
@@ -96,7 +96,7 @@ std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std
   engine_.record(viewport_);
   const draw::View view =
       inspected_view(data, viewport_.drawn_view(picture_view), viewport_, engine_.settings_, sample);
-  engine_.update_view(data, view);
+  engine_.update_view(viewport_, data, view);
   gpu::Device &device = viewport_.device();
   gpu::CommandList list;
   data.probe.draw_surfaces(view, list);

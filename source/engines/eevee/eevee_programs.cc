@@ -323,6 +323,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   if (has(features & declaration.features, Feature::World)) {
     desc.defines.push_back(fmt::format("HAS_WORLD_OCCLUSION {}", int(has(features, Feature::WorldOcclusion))));
   }
+  if (has(features, Feature::CoarseGrid)) {
+    desc.defines.emplace_back("HAS_COARSE_GRID");
+  }
   return desc;
 }
 

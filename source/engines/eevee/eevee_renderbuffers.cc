@@ -58,8 +58,8 @@ draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &vi
 }
 
 /** Set the members of \a data from which positions in the G-buffer follow. \a bounds_ws: of the scene. */
-static void set_places(shared::ViewData &data, const draw::View &view, const glm::dmat4 &world_from_view,
-                       const scene::Bounds &bounds_ws)
+static void set_places(shared::ViewData &data, const draw::View &view, glm::ivec2 size_px,
+                       const glm::dmat4 &world_from_view, const scene::Bounds &bounds_ws)
 {
   const glm::dmat4 projection(view.clip_from_view());
   const glm::dvec3 eye(world_from_view[3]);
@@ -80,12 +80,12 @@ static void set_places(shared::ViewData &data, const draw::View &view, const glm
   const glm::dvec3 right = glm::dvec3(world_from_view[0]) * scale.x;
   const glm::dvec3 up = glm::dvec3(world_from_view[1]) * scale.y;
   data.place_middle = glm::vec3(right * offset.x + up * offset.y);
-  data.place_right = glm::vec4(glm::vec3(right), 0.0F);
-  data.place_up = glm::vec4(glm::vec3(up), 0.0F);
+  data.place_right = glm::vec4(glm::vec3(right), 2.0F / float(size_px.x));
+  data.place_up = glm::vec4(glm::vec3(up), 2.0F / float(size_px.y));
 }
 
-shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index,
-                           const scene::Bounds &bounds_ws)
+shared::ViewData view_data(const draw::View &view, const draw::Viewport &viewport, const Settings &settings,
+                           int sample_index, const scene::Bounds &bounds_ws)
 {
   const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(view.view_from_world()));
   shared::ViewData data{};
@@ -93,7 +93,7 @@ shared::ViewData view_data(const draw::View &view, const Settings &settings, int
   data.position_ws = glm::vec3(world_from_view[3]);
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
-  set_places(data, view, world_from_view, bounds_ws);
+  set_places(data, view, viewport.drawn_size_px(), world_from_view, bounds_ws);
   // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
   // apart.
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;

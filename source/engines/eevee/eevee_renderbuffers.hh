@@ -38,7 +38,7 @@ struct RenderBuffers {
                                         const Settings &settings, int index);
 
 /** The content of `view_block`. \a bounds_ws: of the scene. */
-[[nodiscard]] shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index,
-                                         const scene::Bounds &bounds_ws);
+[[nodiscard]] shared::ViewData view_data(const draw::View &view, const draw::Viewport &viewport,
+                                         const Settings &settings, int sample_index, const scene::Bounds &bounds_ws);
 
 }  // namespace gnomon::eevee

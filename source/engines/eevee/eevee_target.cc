@@ -67,7 +67,8 @@ Need TargetOutput::need(const FrameState &state) const
 
 void TargetOutput::draw_depth(FrameSample &sample, gpu::CommandList &list)
 {
-  const shared::ViewData block = view_data(sample.view, sample.settings, sample.index, sample.bounds_ws);
+  const shared::ViewData block =
+      view_data(sample.view, sample.viewport, sample.settings, sample.index, sample.bounds_ws);
   list.update(buffers_.view_block, 0, std::as_bytes(std::span(&block, 1)));
   if (buffers_.clip_block) {
     const shared::ClipData clip = draw::clip_data(sample.view, picture_depth_fb_.size_px());

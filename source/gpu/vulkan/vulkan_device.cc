@@ -24,6 +24,7 @@ Limits limits_of(const VulkanContext &context)
   limits.color_attachment_max = int(std::min(of.maxColorAttachments, std::uint32_t(PipelineKey::color_count_max)));
   limits.anisotropy_max = context.has_anisotropy ? int(of.maxSamplerAnisotropy) : 1;
   limits.is_software = context.is_software;
+  limits.subpixel_bits = int(of.subPixelPrecisionBits);
   limits.uniform_offset_alignment =
       std::uint32_t(std::max(of.minUniformBufferOffsetAlignment, of.minStorageBufferOffsetAlignment));
   for (Limits::Stage &stage : limits.stages) {

@@ -190,7 +190,7 @@ void VulkanProgram::create(const std::vector<SpirvStage> &stages, const std::vec
   context_.label(VK_OBJECT_TYPE_PIPELINE_LAYOUT, layout_, name_);
 }
 
-VkPipeline VulkanProgram::pipeline(const PipelineKey &key)
+std::pair<VkPipeline, bool> VulkanProgram::pipeline(const PipelineKey &key)
 {
   const auto [made, is_new] = pipelines_.try_emplace(key, VK_NULL_HANDLE);
   if (is_new) {
@@ -202,7 +202,7 @@ VkPipeline VulkanProgram::pipeline(const PipelineKey &key)
       throw;
     }
   }
-  return made->second;
+  return {made->second, is_new};
 }
 
 VkPipeline VulkanProgram::make(const PipelineKey &key)

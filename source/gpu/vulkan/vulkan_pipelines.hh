@@ -11,6 +11,7 @@
 #include <deque>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace gnomon::gpu {
 
@@ -54,8 +55,8 @@ class VulkanProgram {
   VulkanProgram(const VulkanProgram &) = delete;
   VulkanProgram &operator=(const VulkanProgram &) = delete;
 
-  /** Made at the first call for \a key. \throws Error */
-  [[nodiscard]] VkPipeline pipeline(const PipelineKey &key);
+  /** The pipeline of \a key, and whether this call made it, as the first one does. \throws Error */
+  [[nodiscard]] std::pair<VkPipeline, bool> pipeline(const PipelineKey &key);
   [[nodiscard]] VkPipelineLayout layout() const
   {
     return layout_;

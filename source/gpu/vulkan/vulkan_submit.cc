@@ -365,7 +365,10 @@ bool VulkanDevice::prepare_draw(bool is_procedural)
   list_.pipeline.is_procedural = is_procedural;
   list_.pipeline.has_objects = !is_procedural && list_.objects != 0;
   list_.pipeline.vertex_types = vertex_types(is_procedural ? nullptr : list_.host_batch);
-  const VkPipeline pipeline = list_.program->pipeline(list_.pipeline);
+  const auto [pipeline, is_new] = list_.program->pipeline(list_.pipeline);
+  if (is_new) {
+    count_pipeline();
+  }
   if (std::exchange(list_.bound_pipeline, pipeline) != pipeline) {
     context_->vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
   }
