@@ -34,15 +34,13 @@ struct ViewData {
   float mask_shift;
   vec4 place_right;
   vec4 place_up;
+  /**
+   * draw::View::clip_planes for the coordinates of fragments: a fragment is shown if the product with vec4(gl_FragCoord.xyz, 1) is at
+   * least 0 for all planes.
+   */
+  vec4 clip_planes[6];
 };
-SHARED_ASSERT_SIZE(ViewData, 160)
-
-/** Content of `clip_block`: draw::View::clip_planes for the coordinates of fragments. */
-struct ClipData {
-  /** A fragment is shown if the product with vec4(gl_FragCoord.xyz, 1) is at least 0 for all planes. */
-  vec4 planes[6];
-};
-SHARED_ASSERT_SIZE(ClipData, 96)
+SHARED_ASSERT_SIZE(ViewData, 256)
 
 SHARED_END
 

@@ -63,24 +63,25 @@ View View::with_matrices(const glm::mat4 &view_from_world, const glm::mat4 &clip
   return view;
 }
 
-shared::ClipData clip_data(const View &view, glm::ivec2 size_px, glm::ivec2 origin_px)
+void set_clip_planes(shared::ViewData &data, const View &view, const gpu::Rectangle &picture)
 {
+  if (view.clip_planes().empty()) {
+    return;
+  }
   // From a fragment's (x, y, z, 1) to its normalized device coordinates.
   glm::dmat4 ndc_from_window(1.0);
   for (int axis = 0; axis < 2; axis++) {
-    ndc_from_window[axis][axis] = 2.0 / size_px[axis];
-    ndc_from_window[3][axis] = -1.0 - 2.0 * origin_px[axis] / size_px[axis];
+    ndc_from_window[axis][axis] = 2.0 / picture.size_px[axis];
+    ndc_from_window[3][axis] = -1.0 - 2.0 * picture.origin_px[axis] / picture.size_px[axis];
   }
   const glm::dmat4 clip_from_world = glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world());
   const glm::dmat4 window_from_plane = glm::transpose(glm::inverse(clip_from_world) * ndc_from_window);
-  // Other planes are (0, 0, 0, 0), behind which nothing is.
-  shared::ClipData data{};
+  // The other planes stay (0, 0, 0, 0), behind which nothing is.
   for (std::size_t i = 0; i < view.clip_planes().size(); i++) {
     const glm::dvec4 plane = window_from_plane * glm::dvec4(view.clip_planes()[i]);
     const double most = std::max({std::abs(plane.x), std::abs(plane.y), std::abs(plane.z), std::abs(plane.w)});
-    data.planes[i] = most > 0.0 && std::isfinite(most) ? glm::vec4(plane / most) : glm::vec4(0.0F);
+    data.clip_planes[i] = most > 0.0 && std::isfinite(most) ? glm::vec4(plane / most) : glm::vec4(0.0F);
   }
-  return data;
 }
 
 View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view, const Lens &lens)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_framebuffer.hh"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -14,7 +16,7 @@
 #include <vector>
 
 namespace gnomon::shared {
-struct ClipData;
+struct ViewData;
 }
 
 namespace gnomon::draw {
@@ -166,8 +168,8 @@ class View {
   std::vector<glm::vec4> clip_planes_;
 };
 
-/** The content of `clip_block` for a pass of \a view whose viewport has this size and lower left corner. */
-[[nodiscard]] shared::ClipData clip_data(const View &view, glm::ivec2 size_px, glm::ivec2 origin_px = {0, 0});
+/** Set the clip planes of \a data, in which they are 0, for a pass of \a view into \a picture. */
+void set_clip_planes(shared::ViewData &data, const View &view, const gpu::Rectangle &picture);
 
 /**
  * Perspective projection with reversed depth: z / w is 1 at the near plane and 0 at the far plane. \a half_width and

@@ -259,17 +259,18 @@ TEST(View, ClipPlanesInCoordinatesOfFragmentsHaveTheSameSides)
     for (int i = 0; i < 1000; i++) {
       const glm::vec4 plane(place(random), place(random), place(random), place(random));
       const View view = View(view_from_world, projection).with_clip_planes({{0, 0, 0, 1}, plane});
-      const shared::ClipData data = clip_data(view, size_px);
+      shared::ViewData data{};
+      set_clip_planes(data, view, {{0, 0}, size_px});
       const glm::vec3 point(place(random), place(random), place(random));
       const float height = glm::dot(plane, glm::vec4(point, 1.0F));
       const glm::vec3 at = ndc(view.clip_from_world(), point);
       const glm::vec4 fragment(0.5F * (at.x + 1.0F) * float(size_px.x), 0.5F * (at.y + 1.0F) * float(size_px.y), at.z,
                                1);
       if (std::abs(height) > 1e-3F) {
-        EXPECT_EQ(glm::dot(data.planes[1], fragment) < 0.0F, height < 0.0F) << i;
+        EXPECT_EQ(glm::dot(data.clip_planes[1], fragment) < 0.0F, height < 0.0F) << i;
       }
-      EXPECT_GE(glm::dot(data.planes[0], fragment), 0.0F);
-      EXPECT_EQ(data.planes[2], glm::vec4(0.0F)) << "no plane";
+      EXPECT_GE(glm::dot(data.clip_planes[0], fragment), 0.0F);
+      EXPECT_EQ(data.clip_planes[2], glm::vec4(0.0F)) << "no plane";
       behind += height < 0.0F ? 1 : 0;
     }
     EXPECT_GT(behind, 300);

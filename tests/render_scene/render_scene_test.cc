@@ -180,8 +180,7 @@ TEST_F(RenderSceneTest, OtherValuesOfVerticesAreWrittenIntoTheBatchThatPassesDra
   EXPECT_EQ(render_scene.passes_revision(), passes);
   EXPECT_EQ(render_scene.content_revision(), content + 3);
   EXPECT_EQ(render_scene.object(object_of(node)).bounds, scene.meshes()[edited].bounds);
-  EXPECT_EQ(uploads_of_batch(edited, MeshStreams::All), count * (2 * 12 + 4 * 8) + 12)
-      << "a batch with more streams";
+  EXPECT_EQ(uploads_of_batch(edited, MeshStreams::All), count * (2 * 12 + 4 * 8) + 12) << "a batch with more streams";
 }
 
 TEST_F(RenderSceneTest, VerticesOfALostPacketAreWrittenAgain)

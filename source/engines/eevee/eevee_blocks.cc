@@ -32,9 +32,8 @@ constexpr auto view_fields = std::to_array<Field>({
     {"view.mask_shift", offsetof(ViewData, mask_shift)},
     {"view.place_right", offsetof(ViewData, place_right)},
     {"view.place_up", offsetof(ViewData, place_up)},
+    {"view.clip_planes", offsetof(ViewData, clip_planes)},
 });
-
-constexpr auto clip_fields = std::to_array<Field>({{"clip.planes", offsetof(ClipData, planes)}});
 
 constexpr auto object_fields = std::to_array<Field>({
     {"objects[0].world_from_object", offsetof(ObjectData, world_from_object)},
@@ -187,9 +186,8 @@ constexpr auto surface_function_fields = std::to_array<Field>({
     {"surface_function.emission", offsetof(SurfaceFunctionData, emission)},
 });
 
-constexpr std::array<gpu::BlockLayout, 14> layouts = {{
+constexpr std::array<gpu::BlockLayout, 13> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
-    {"clip_block", sizeof(ClipData), clip_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
     {"full_material_block", sizeof(FullMaterialData), full_material_fields},

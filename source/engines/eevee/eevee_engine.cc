@@ -160,9 +160,6 @@ void Engine::begin_draw(draw::Viewport &viewport)
 /** Update the blocks that all passes of a sample read. */
 void Engine::update_view(const draw::Viewport &viewport, Data &data, const draw::View &view)
 {
-  if (data.buffers.clip_block) {
-    scene_.device().update(data.buffers.clip_block, draw::clip_data(view, data.buffers.main_fb.size_px()));
-  }
   data.shared->materials.follow(scene_);
   scene_.device().update(data.buffers.view_block,
                          view_data(view, viewport, settings_, data.sample_index, scene_.bounds()));

@@ -87,9 +87,6 @@ FrameState Data::state(const Settings &settings) const
 void Data::bind_lit(draw::ShadingGroup &group) const
 {
   group.bind_uniform("view_block", buffers.view_block);
-  if (buffers.clip_block) {
-    group.bind_uniform("clip_block", buffers.clip_block);
-  }
   shared->materials.bind(group);
   shared->lights.bind(group);
   lights.bind(group);

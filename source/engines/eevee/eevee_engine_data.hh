@@ -47,8 +47,6 @@ struct SharedData {
   SceneLights lights{world};
   SceneShadows shadows;
   ShadowPass shadow_pass;
-  /** A view has had clip planes. Programs of blended surfaces then read more blocks. */
-  bool is_clipped = false;
   /** gpu::Device::loss_count up to which lost submissions were handled. */
   std::uint64_t loss_count = 0;
 };

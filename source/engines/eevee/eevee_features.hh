@@ -52,20 +52,20 @@ enum class Feature : std::uint32_t {
   Multiscatter = 1U << 17,
   /** Pixels visit only the lights that can reach their froxel. The lights are in `light_texture`. */
   LightClusters = 1U << 18,
-  /** The view has clip planes. Only for programs that write depths, or draw blended surfaces. */
-  ClipPlanes = 1U << 19,
   /**
    * With several samples, a lamp with an extent may be reflected as a whole (HIGHLIGHT_LOBE_POINTS). It is a constant
    * of programs with LampShape, and selects no variant: their interfaces are the same.
    */
-  LampHighlights = 1U << 20,
+  LampHighlights = 1U << 19,
   /**
    * The surface receives occlusion of the world's light in a picture of one sample. A constant of programs with World,
    * as LampHighlights is of those with LampShape.
    */
-  WorldOcclusion = 1U << 21,
+  WorldOcclusion = 1U << 20,
   /** The device moves vertices to a coarse grid (gpu::Limits::subpixel_bits). A constant of the G-buffer's program. */
-  CoarseGrid = 1U << 22,
+  CoarseGrid = 1U << 21,
+  /** The view has clip planes. A constant of programs that write depths, or draw blended surfaces. */
+  ClipPlanes = 1U << 22,
 };
 
 GNOMON_MASK_OPERATORS(Feature)
@@ -74,7 +74,8 @@ GNOMON_MASK_OPERATORS(Feature)
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
 /** Constants of programs. They select no variant. */
-inline constexpr Feature program_constants = Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid;
+inline constexpr Feature program_constants =
+    Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid | Feature::ClipPlanes;
 
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)

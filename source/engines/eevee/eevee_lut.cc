@@ -28,7 +28,7 @@ void LookupTables::make(gpu::Device &device, Feature features, Feature read)
   const bool has_multiscatter = has_light && has(read, Feature::Multiscatter);
   const Feature of_ltc = has_multiscatter ? Feature::LampShape : Feature::LampShape | Feature::World;
   const bool has_ltc =
-      has_light && (has(read, Feature::Layers | Feature::ClipPlanes) || (has(features, of_ltc) && has(features, Feature::Specular)));
+      has_light && (has(read, Feature::Layers) || (has(features, of_ltc) && has(features, Feature::Specular)));
   update(ltc_, device, "ltc_table", has_ltc, {2 * LTC_TABLE_SIZE, LTC_TABLE_SIZE}, ltc_table);
   update(multiscatter_, device, "multiscatter_table", has_multiscatter, glm::ivec2(MULTISCATTER_TABLE_SIZE),
          multiscatter_table);

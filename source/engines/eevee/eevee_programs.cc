@@ -12,7 +12,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 20> feature_table = {
+constexpr std::array<FeatureDefine, 19> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -34,8 +34,7 @@ constexpr std::array<FeatureDefine, 20> feature_table = {
      {Feature::Multiscatter, "USE_MULTISCATTER",
       "microfacets reflect light more than once, and a material reflects specularly"},
      {Feature::LightClusters, "USE_LIGHT_CLUSTERS",
-      "many lamps have a range, or there are more than light_block holds"},
-     {Feature::ClipPlanes, "USE_CLIP_PLANES", "the view has clip planes"}}};
+      "many lamps have a range, or there are more than light_block holds"}}};
 
 /** Features of lighting. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
@@ -50,8 +49,8 @@ constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
 constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 
 constexpr std::array<ShaderDeclaration, 27> declarations = {{
-    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     alpha_features | Feature::ClipPlanes, Feature::None, "depth of what is seen, so that each pixel is lit once"},
+    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
+     Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_shadow_frag.glsl",
      caster_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
@@ -61,8 +60,7 @@ constexpr std::array<ShaderDeclaration, 27> declarations = {{
      "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_shadow_frag.glsl", caster_features, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
-     light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers | Feature::Transmission |
-         Feature::ClipPlanes,
+     light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers | Feature::Transmission,
      Feature::None, "light that surfaces send to the viewer"},
     {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
      shadow_features, Feature::Light, "position, normal and visibility of one lamp, for comparison with the reference"},
@@ -100,10 +98,9 @@ constexpr std::array<ShaderDeclaration, 27> declarations = {{
      Feature::Light | Feature::BaseColorTexture | Feature::FullMaterial, Feature::Light,
      "position, normal, object, albedo and roughness of surfaces, for compositing", "WRITES_OBJECT"},
     {ShaderId::DepthFunction, "eevee_depth_function", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     alpha_features | Feature::ClipPlanes, alpha_features, "depth of what a surface function cuts out",
-     "USE_SURFACE_FUNCTION"},
+     alpha_features, alpha_features, "depth of what a surface function cuts out", "USE_SURFACE_FUNCTION"},
     {ShaderId::GBuffer, "eevee_gbuffer", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_gbuffer_frag.glsl",
-     Feature::Light | Feature::Specular | Feature::ClipPlanes, Feature::Light,
+     Feature::Light | Feature::Specular, Feature::Light,
      "normals and materials of what is seen, for deferred lighting"},
     {ShaderId::DeferredLit, "eevee_deferred_lit", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_deferred_lit_frag.glsl", without(light_features, Feature::ShadowEsm | Feature::ShadowEvsm),
@@ -147,7 +144,7 @@ constexpr Feature depth_maps = Feature::ShadowCube | Feature::ShadowMap;
 constexpr Feature often_together = Feature::World | Feature::Layers | Feature::Multiscatter;
 
 /** with_variant applies the rules in this order. shader_variants returns the masks that fulfil all of them. */
-constexpr std::array<FeatureRule, 21> feature_rules = {{
+constexpr std::array<FeatureRule, 17> feature_rules = {{
     // Variants for full materials always read the base colour texture. In programs that only test alpha, a full
     // material makes a difference only with an alpha mask.
     {Feature::FullMaterial, RuleKind::No, Feature::BaseColorTexture},
@@ -174,13 +171,6 @@ constexpr std::array<FeatureRule, 21> feature_rules = {{
     // Most scenes that have the first need the last together.
     {often_together, RuleKind::Add, Feature::Punctual | Feature::LampShape, Feature::Punctual | Feature::LampShape},
     {often_together, RuleKind::Add, Feature::ShadowEvsm, Feature::ShadowEsm},
-    // With clip planes, only blended surfaces need other programs for light. Their variants are few, and read what they
-    // can.
-    {Feature::ClipPlanes, RuleKind::All, Feature::FullMaterial, Feature::Light},
-    {Feature::ClipPlanes, RuleKind::Add, Feature::Punctual | Feature::Specular | Feature::LampShape,
-     Feature::FullMaterial, Feature::Light},
-    {Feature::ClipPlanes, RuleKind::Add, Feature::ShadowPcf, Feature::FullMaterial, depth_maps},
-    {Feature::ClipPlanes, RuleKind::Add, Feature::ShadowEvsm, Feature::FullMaterial, Feature::ShadowEsm},
     {lit_features, RuleKind::All, Feature::Light},
 }};
 
@@ -325,6 +315,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   }
   if (has(features, Feature::CoarseGrid)) {
     desc.defines.emplace_back("HAS_COARSE_GRID");
+  }
+  if (has(features, Feature::ClipPlanes)) {
+    desc.defines.emplace_back("USE_CLIP_PLANES");
   }
   return desc;
 }

@@ -28,8 +28,7 @@ void Engine::make_blocks(draw::Viewport &viewport)
   // they share the blocks.
   const Feature read =
       with_variant(data.features | (materials.features & (Feature::Layers | Feature::Transmission)) |
-                   (materials.has_functions ? lit_function_features : Feature::None) | asked_features(settings_) |
-                   (shared.is_clipped ? Feature::ClipPlanes | Feature::FullMaterial : Feature::None));
+                   (materials.has_functions ? lit_function_features : Feature::None) | asked_features(settings_));
   shared.lights.make(device, settings_, read);
   data.lights.make(device);
   shared.world.update_light(scene_, data.features, settings_);
@@ -46,8 +45,6 @@ void Engine::record(draw::Viewport &viewport)
   data.is_synced = false;
   SharedData &shared = *data.shared;
   data.buffers.make(viewport);
-  data.buffers.set_clipped(viewport.device(), data.is_clipped);
-  shared.is_clipped |= data.is_clipped;
   data.materials.update(scene_, data.surfaces.objects());
   if (data.materials.transmissive.empty()) {
     data.transmission.free();
@@ -93,7 +90,7 @@ void Engine::record_passes(draw::Viewport &viewport)
        .has_probe = settings_.has_probe,
        .has_surfaces = settings_.has_surfaces,
        .has_behind = bool(data.transmission.behind()),
-       .is_clipped = bool(data.buffers.clip_block)},
+       .is_clipped = data.is_clipped},
       bind);
   data.depth.record_lighting(device, *shaders_, with_variant(features), bind);
 }

@@ -28,16 +28,6 @@ void RenderBuffers::make(draw::Viewport &viewport)
   nearest = device.create_sampler({.name = "nearest"});
 }
 
-void RenderBuffers::set_clipped(gpu::Device &device, bool is_clipped)
-{
-  if (!is_clipped) {
-    clip_block = {};
-  }
-  else if (!clip_block) {
-    clip_block = device.create_buffer({"clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
-  }
-}
-
 void RenderBuffers::resized()
 {
   depth_fb = {};
@@ -98,6 +88,7 @@ shared::ViewData view_data(const draw::View &view, const draw::Viewport &viewpor
   // apart.
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
   data.mask_shift = shared::to_unit(shared::scrambled_van_der_corput(std::uint32_t(sample_index), settings.seed));
+  draw::set_clip_planes(data, view, {{0, 0}, viewport.drawn_size_px()});
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
 }
@@ -109,8 +100,6 @@ void RenderBuffers::report(draw::Viewport &viewport, ResourceReport &report) con
                     nothing_seen);
   report.add_target(radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
   report.add_block(view_block, "view_block", "whatever is drawn", nothing_seen);
-  report.add_block(clip_block, "clip_block", "planes in the coordinates of fragments",
-                   report.is_recorded ? "the view has no clip planes" : nothing_seen);
 }
 
 }  // namespace gnomon::eevee

@@ -18,13 +18,10 @@ struct RenderBuffers {
   gpu::Framebuffer depth_fb;
   gpu::Framebuffer main_fb;
   gpu::Buffer view_block;
-  /** Empty unless the view has clip planes. */
-  gpu::Buffer clip_block;
   gpu::Sampler nearest;
 
   /** Create what does not exist. */
   void make(draw::Viewport &viewport);
-  void set_clipped(gpu::Device &device, bool is_clipped);
   /** Destroy what depends on the size of the picture. */
   void resized();
   void report(draw::Viewport &viewport, ResourceReport &report) const;

@@ -86,7 +86,8 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature variant = variant_of(declaration, features);
   const Feature constants = (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
-                            (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None);
+                            (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None) |
+                            Feature::ClipPlanes;
   // With 8 bits, positions from depths are off their plane by less than the normal offset of receivers.
   const bool is_coarse = id == ShaderId::GBuffer && device.limits().subpixel_bits < 8;
   const Feature grid = is_coarse ? Feature::CoarseGrid : Feature::None;

@@ -70,10 +70,6 @@ void TargetOutput::draw_depth(FrameSample &sample, gpu::CommandList &list)
   const shared::ViewData block =
       view_data(sample.view, sample.viewport, sample.settings, sample.index, sample.bounds_ws);
   list.update(buffers_.view_block, 0, std::as_bytes(std::span(&block, 1)));
-  if (buffers_.clip_block) {
-    const shared::ClipData clip = draw::clip_data(sample.view, picture_depth_fb_.size_px());
-    list.update(buffers_.clip_block, 0, std::as_bytes(std::span(&clip, 1)));
-  }
   list.begin_pass("picture_depth", picture_depth_fb_, {.scissor = sample.viewport.drawn_region()});
   record_calls(sample, sample.view, list);
   list.end_pass();
@@ -99,7 +95,7 @@ FrameStep TargetOutput::depth_step(std::vector<FramePass> passes)
           .when = FrameStep::When::EachTarget,
           .part = FrameStep::Part::Each,
           .need = [this](const FrameState &state) { return need_depth(state); },
-          .writes = {"view_block", "clip_block", "picture_depth"},
+          .writes = {"view_block", "picture_depth"},
           .passes = std::move(passes),
           .record = [this](FrameSample &sample, gpu::CommandList &list) { draw_depth(sample, list); },
           .submitted = [this](FrameSample &) { has_picture_depth_ = true; }};

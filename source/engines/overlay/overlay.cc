@@ -111,14 +111,8 @@ void Overlay::write_view(const draw::View &view, const gpu::Rectangle &picture)
   }
   shared::ViewData view_data{};
   view_data.clip_from_world = view.clip_from_world();
+  draw::set_clip_planes(view_data, view, picture);
   device.update(view_block_, view_data);
-  if (view.clip_planes().empty()) {
-    return;
-  }
-  if (!clip_block_) {
-    clip_block_ = device.create_buffer({"overlay_clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
-  }
-  device.update(clip_block_, draw::clip_data(view, picture.size_px, picture.origin_px));
 }
 
 bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const IsDrawn &is_drawn, ObjectsTarget &target,
@@ -160,9 +154,6 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
       group = &pass.group(shader(ShaderId::Objects, mask_features(cut_out) | clip));
       group->state_enable(state);
       group->bind_uniform("view_block", view_block_);
-      if (clip != Feature::None) {
-        group->bind_uniform("clip_block", clip_block_);
-      }
       group->bind_storage_ref("material_block", &material_block);
       group->bind_storage_ref("full_material_block", &full_material_block);
       render_scene::bind_textures(*group, scene_, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor,

@@ -172,7 +172,6 @@ class Overlay {
   std::map<std::pair<ShaderId, Feature>, std::shared_ptr<gpu::SharedShader>> shaders_;
   gpu::Buffer view_block_;
   /** Empty until a view has clip planes. */
-  gpu::Buffer clip_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
   /** The objects of an outline. */

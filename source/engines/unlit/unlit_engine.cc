@@ -26,11 +26,13 @@ gpu::Buffer create_view_block(gpu::Device &device, const char *name)
   return device.create_buffer({name, gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
 }
 
-/** Writes clip_from_world. A texture_lod_bias of 0 suits one sample; only lit surfaces read the other members. */
-void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw::View &view)
+/** Writes clip_from_world and clip_planes. A texture_lod_bias of 0 suits one sample; only lit surfaces read the other
+ * members. */
+void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw::View &view, glm::ivec2 size_px)
 {
   shared::ViewData data{};
   data.clip_from_world = view.clip_from_world();
+  draw::set_clip_planes(data, view, {{0, 0}, size_px});
   device.update(block, data);
 }
 
@@ -181,18 +183,9 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   bool is_depth_drawn = false;
   if (data.is_seen) {
     update_depth_camera(device, data.objects);
-    if (view.clip_planes().empty()) {
-      data.clip_block = {};
-    }
-    else {
-      if (!data.clip_block) {
-        data.clip_block =
-            device.create_buffer({"unlit_clip_block", gpu::BufferKind::Uniform, sizeof(shared::ClipData)});
-      }
-      device.update(data.clip_block, draw::clip_data(view, viewport.drawn_size_px()));
-    }
+    data.is_clipped = !view.clip_planes().empty();
     record(data, device);
-    update_view_block(device, data.view_block, view);
+    update_view_block(device, data.view_block, view, viewport.drawn_size_px());
     if (depth_camera_) {
       depth.view = depth_camera_->view;
       is_depth_drawn = depth_camera_->drawn != depth;
@@ -283,7 +276,7 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
         device.create_framebuffer({.name = "unlit_depth_camera_fb", .colors = {}, .depth = {&camera.texture}});
     camera.view_block = create_view_block(device, "unlit_depth_view_block");
   }
-  update_view_block(device, camera.view_block, camera.view);
+  update_view_block(device, camera.view_block, camera.view, size_px);
   const PassesKey key{.structure = scene_.objects().structure_revision(),
                       .passes = scene_.passes_revision(),
                       .settings = settings_revision_,

@@ -110,8 +110,8 @@ struct Data final : draw::EngineViewportData {
   gpu::Texture radiance;
   gpu::Framebuffer framebuffer;
   gpu::Buffer view_block;
-  /** Empty unless the view has clip planes. */
-  gpu::Buffer clip_block;
+  /** The view has clip planes. */
+  bool is_clipped = false;
   gpu::Sampler nearest;
   SceneBlocks blocks;
   std::optional<draw::Pass> surfaces;

@@ -21,7 +21,7 @@ void Engine::record(Data &data, gpu::Device &device)
                       .settings = settings_revision_,
                       .losses = device.loss_count(),
                       .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0,
-                      .is_clipped = bool(data.clip_block),
+                      .is_clipped = data.is_clipped,
                       .display = data.display};
   if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
     data.recorded = {};
@@ -59,7 +59,7 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
     data.is_mirrored[index] = scene_.objects().is_mirrored(index);
     const bool is_receiver = depth_camera_ && object.receives_shadow;
     const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None) |
-                             (data.clip_block ? Feature::ClipPlanes : Feature::None) |
+                             (data.is_clipped ? Feature::ClipPlanes : Feature::None) |
                              (data.display.is_xray ? Feature::XRay : Feature::None);
     const bool is_wireframe = data.display.is_wireframe && mesh.topology == scene::Topology::Triangles;
     const State fixed = (data.is_mirrored[index] ? State::FrontClockwise : State::None) |
@@ -72,9 +72,6 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
       draw::ShadingGroup &group = pass.group(shader(device, ShaderId::Surface, features));
       group.state_enable(state);
       group.bind_uniform("view_block", data.view_block);
-      if (data.clip_block) {
-        group.bind_uniform("clip_block", data.clip_block);
-      }
       data.blocks.bind(group);
       render_scene::bind_textures(group, scene_, surface, textures);
       if (is_receiver) {

@@ -459,7 +459,7 @@ void VulkanDevice::shader_create(const Operation::CreateShader &create, std::vec
 
 void VulkanDevice::timer_query_create(ResourceId id, const std::string &name)
 {
-  timers_.insert(id, {.name = name});
+  timers_.insert(id, Timer{name, {}, {}});
 }
 
 void VulkanDevice::resource_destroy(ResourceKind kind, ResourceId id)

@@ -96,9 +96,6 @@ TEST(ShaderVariants, EveryFrameHasADeclaredProgramForEachMaterial)
       const Feature reflects = has(material, Feature::Layers) ? Feature::Specular : Feature::None;
       const Feature variant = with_variant(frame | material | reflects);
       EXPECT_TRUE(declared.contains(variant)) << mask << ' ' << std::uint32_t(material);
-      const Feature clipped = with_variant(frame | material | reflects | Feature::ClipPlanes);
-      EXPECT_TRUE(!has(material, Feature::FullMaterial) || declared.contains(clipped))
-          << "clipped: " << mask << ' ' << std::uint32_t(material);
       const bool is_asked = has(frame, Feature::Multiscatter) && has(frame | reflects, Feature::Specular);
       EXPECT_EQ(has(variant, Feature::Multiscatter), is_asked) << mask << ' ' << std::uint32_t(material);
     }
