@@ -367,7 +367,7 @@ void GlDevice::host_batch_create(ResourceId id, const std::string &name, const H
 
 void GlDevice::timer_query_create(ResourceId id, const std::string &name)
 {
-  timers_.insert(id, {.name = name});
+  timers_.insert(id, Timer{name, {}, {}});
 }
 
 void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
