@@ -81,6 +81,14 @@ class CheckedRenderer {
                             [&] { is_complete = renderer_->draw_sample(camera, target); });
     return is_complete && edit_.empty();
   }
+  [[nodiscard]] render_scene::RenderScene &render_scene()
+  {
+    return renderer_->render_scene();
+  }
+  [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const
+  {
+    return renderer_->view_of(camera);
+  }
 
  private:
   const scene::Scene &scene_;
