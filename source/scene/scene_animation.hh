@@ -84,7 +84,7 @@ struct AnimatedValue {
   SharedTrack track;
   /**
    * Emission: one number, by which the three of `track` are multiplied; nullptr: 1. A spot's cone: the angle at which
-   * the light begins to fade, radians, which `track` is a limit of; not nullptr.
+   * the light begins to fade, radians, at most that of `track`; not nullptr.
    */
   SharedTrack second_track{};
 };

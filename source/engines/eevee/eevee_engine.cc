@@ -201,10 +201,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
       has_background(settings_, scene_) || std::ranges::any_of(data.surfaces.objects(), is_visible);
   data.is_seen |= is_sample_seen;
   data.is_transmission_seen = false;
-  const bool is_clipped = !view.clip_planes().empty();
-  if (std::exchange(data.is_clipped, is_clipped) != is_clipped) {
-    data.is_recorded = false;
-  }
+  data.follow_clip(view);
   const bool awaits_depths = data.is_seen && !viewport.is_moving() && data.depth.awaits(view);
   const bool is_for_feedback = is_sample_seen && awaits_depths && viewport.draws_until_final();
   if (is_sample_seen) {
@@ -296,6 +293,7 @@ void Engine::take_losses(draw::Viewport &viewport)
   SharedData &shared = *data.shared;
   if (shared.loss_count != loss_count) {
     shared.lights.forget();
+    shared.world.forget();
     shared.shadow_pass.forget();
     shared.shadows.invalidate();
     sync_lights(shared);

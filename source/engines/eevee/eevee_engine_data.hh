@@ -93,8 +93,14 @@ struct Data final : draw::EngineViewportData {
   bool is_synced = false;
   /** Passes, programs and targets are up to date: an object or a background was visible since the last sync. */
   bool is_recorded = false;
-  /** The view of the last sample has clip planes. */
+  /** The last drawn view has clip planes. */
   bool is_clipped = false;
+  /** Programs with and without clip planes are others. Call this before passes for \a view are recorded. */
+  void follow_clip(const draw::View &view)
+  {
+    is_recorded &= is_clipped == !view.clip_planes().empty();
+    is_clipped = !view.clip_planes().empty();
+  }
   /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;
   /** An object of DrawnMaterials::transmissive is in the view of the current sample. */

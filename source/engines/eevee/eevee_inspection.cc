@@ -59,6 +59,7 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   if (!light || data.surfaces.objects().empty()) {
     return std::nullopt;
   }
+  data.follow_clip(picture_view);
   engine_.record(viewport_);
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
@@ -93,6 +94,7 @@ std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std
   if (data.surfaces.objects().empty()) {
     return std::nullopt;
   }
+  data.follow_clip(picture_view);
   engine_.record(viewport_);
   const draw::View view =
       inspected_view(data, viewport_.drawn_view(picture_view), viewport_, engine_.settings_, sample);

@@ -68,23 +68,27 @@ void SceneWorld::sync_occlusion(const render_scene::RenderScene &scene, const Se
   if (occlusion_key_ == key) {
     return;
   }
-  occlusion_key_ = key;
-  is_block_written_ = false;
-  directions_ = {};
+  // It stays empty if an exception ends the work, so that the next call does it again.
+  const std::optional<OcclusionKey> last = std::exchange(occlusion_key_, std::nullopt);
+  bool is_changed = !last || last->world != key.world || last->is_traced != is_traced || last->is_sampled != is_sampled;
   if (!is_traced) {
     occlusion_.reset();
   }
   else {
-    if (!occlusion_) {
-      occlusion_ = std::make_unique<WorldOcclusion>();
+    auto traced = occlusion_ ? std::move(occlusion_) : std::make_unique<WorldOcclusion>();
+    is_changed |= traced->update(scene, !is_sampled);
+    occlusion_ = std::move(traced);
+  }
+  if (is_changed) {
+    is_block_written_ = false;
+    directions_ = {};
+    const std::shared_ptr<const render_scene::WorldLight> &world = scene.world();
+    if (is_sampled && world && !world->rest_directions.empty()) {
+      directions_ = occlusion_ ? occlusion_->directions()
+                               : WorldDirections{{world, &world->rest_directions}, WorldDirections::few};
     }
-    occlusion_->update(scene);
   }
-  const std::shared_ptr<const render_scene::WorldLight> &world = scene.world();
-  if (is_sampled && world && !world->rest_directions.empty()) {
-    directions_ = occlusion_ ? occlusion_->directions(world)
-                             : WorldDirections{{world, &world->rest_directions}, WorldDirections::few};
-  }
+  occlusion_key_ = key;
 }
 
 void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings)

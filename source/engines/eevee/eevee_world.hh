@@ -68,6 +68,11 @@ class SceneWorld {
   void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings);
   /** Create the picture of the background if it is shown and changed; free it if it is not shown. */
   void update_picture(const render_scene::RenderScene &scene, const Settings &settings);
+  /** After a submission was lost: the next update_light writes the block again. */
+  void forget()
+  {
+    is_block_written_ = false;
+  }
   void bind(draw::ShadingGroup &group) const;
   /**
    * Write the members of `world_block` that change with each sample. \a points: WORLD_SUN_POINTS of each sun.

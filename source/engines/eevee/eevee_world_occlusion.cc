@@ -45,14 +45,8 @@ double luminance(const glm::dvec3 &radiance)
   return glm::dot(radiance, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
-/** Luminance of the rest of \a world from \a direction. */
-double luminance(const render_scene::WorldLight &world, const glm::vec3 &direction)
-{
-  constexpr glm::ivec2 size = render_scene::WorldLight::size;
-  const glm::ivec2 texel(shared::equirectangular(direction) * glm::vec2(size));
-  const glm::ivec2 inside = glm::clamp(texel, glm::ivec2(0), size - 1);
-  return luminance(world.rest[std::size_t(inside.y * size.x + inside.x)]);
-}
+/** Directions in columns of azimuth and rows of height: cells of the same solid angle. */
+constexpr glm::ivec2 grid(32, 16);
 
 bool meets(const scene::Bounds &box, const glm::vec3 &origin, const glm::vec3 &direction)
 {
@@ -121,7 +115,25 @@ void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
   rays_traced_ += traced;
 }
 
-void WorldOcclusion::add_up(const render_scene::WorldLight &world)
+void WorldOcclusion::light_rays()
+{
+  constexpr glm::ivec2 size = render_scene::WorldLight::size;
+  rays_.resize(hits_.size());
+  scene::parallel_for(std::size_t(probe_count()), 0, [&](std::size_t probe) {
+    for (int ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = ray_direction(probe, ray);
+      const glm::vec2 place = shared::equirectangular(direction);
+      const glm::ivec2 texel = glm::clamp(glm::ivec2(place * glm::vec2(size)), glm::ivec2(0), size - 1);
+      const glm::vec2 even(place.x, 0.5F + 0.5F * direction.y);
+      const glm::ivec2 cell = glm::min(glm::ivec2(even * glm::vec2(grid)), grid - 1);
+      rays_[probe * probe_rays + std::size_t(ray)] = {
+          std::uint16_t(cell.y * grid.x + cell.x),
+          float(luminance(world_->rest[std::size_t(texel.y * size.x + texel.x)]))};
+    }
+  });
+}
+
+void WorldOcclusion::add_up()
 {
   probes_.assign(std::size_t(probe_count()), {});
   struct Whole {
@@ -141,7 +153,7 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
     Whole &whole = wholes[probe];
     for (int ray = 0; ray < probe_rays; ray++) {
       const glm::vec3 direction = ray_direction(probe, ray);
-      const auto light = float(luminance(world, direction));
+      const float light = rays_[probe * probe_rays + std::size_t(ray)].luminance;
       const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
       const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
       const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
@@ -161,10 +173,8 @@ void WorldOcclusion::add_up(const render_scene::WorldLight &world)
   }
 }
 
-WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_scene::WorldLight> &world) const
+WorldDirections WorldOcclusion::directions() const
 {
-  // Columns of azimuth and rows of height: cells of the same solid angle.
-  constexpr glm::ivec2 grid(32, 16);
   struct Cell {
     double arriving = 0.0;
     double whole = 0.0;
@@ -176,22 +186,20 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
     // A probe counts by the surfaces that face it: none do inside of a body, below a ground or high above it.
     const auto seen = double(std::ranges::count(hits.first(body_rays), RayHit::Front));
     for (int ray = 0; ray < probe_rays; ray++) {
-      const glm::vec3 direction = ray_direction(probe, ray);
-      const glm::vec2 place(shared::equirectangular(direction).x, 0.5F + 0.5F * direction.y);
-      const glm::ivec2 cell = glm::min(glm::ivec2(place * glm::vec2(grid)), grid - 1);
-      Cell &sum = cells[std::size_t(cell.y * grid.x + cell.x)];
+      const Ray &lit = rays_[probe * probe_rays + std::size_t(ray)];
+      Cell &sum = cells[lit.cell];
       sum.whole += seen;
       sum.arriving += hits[std::size_t(ray)] == RayHit::None ? seen : 0.0;
-      const double light = seen * luminance(*world, direction);
+      const double light = seen * double(lit.luminance);
       all.whole += light;
       all.arriving += hits[std::size_t(ray)] == RayHit::None ? light : 0.0;
     }
   }
-  WorldDirections result{{world, &world->rest_directions}, WorldDirections::few};
+  WorldDirections result{{world_, &world_->rest_directions}, WorldDirections::few};
   if (!(all.arriving > 0.0)) {
     return result;
   }
-  // What a direction brings to a place is all or nothing. The least variance has the root of the mean of its square.
+  // A place gets all light of a direction or none. The least variance has the root of the mean of its square.
   const auto brought = [&](double column, double row) {
     const glm::dvec2 low = glm::floor(glm::dvec2(column, row));
     double value = 0.0;
@@ -207,7 +215,7 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
   };
   constexpr glm::ivec2 size = render_scene::WorldLight::size;
   std::vector<float> importance;
-  importance.reserve(world->rest.size());
+  importance.reserve(world_->rest.size());
   double sum = 0.0;
   double whole = 0.0;
   for (int y = 0; y < size.y; y++) {
@@ -215,7 +223,7 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
     const double solid_angle = render_scene::texel_solid_angle(y, size.x, size.y);
     for (int x = 0; x < size.x; x++) {
       const double value = brought(grid.x * (x + 0.5) / size.x - 0.5, grid.y * height - 0.5);
-      const double light = solid_angle * luminance(world->rest[importance.size()]);
+      const double light = solid_angle * luminance(world_->rest[importance.size()]);
       importance.push_back(float(value));
       sum += light * value;
       whole += light;
@@ -226,8 +234,8 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
   for (float &value : importance) {
     value = float(least + (1.0 - least) * double(value) * whole / sum);
   }
-  result.distribution =
-      std::make_shared<const render_scene::WorldDistribution>(render_scene::rest_distribution(world->rest, importance));
+  result.distribution = std::make_shared<const render_scene::WorldDistribution>(
+      render_scene::rest_distribution(world_->rest, importance));
   // In an open place half of the directions are below the ground. In a room, most meet a wall.
   if (all.arriving < 0.125 * all.whole) {
     result.count = WorldDirections::many;
@@ -235,23 +243,38 @@ WorldDirections WorldOcclusion::directions(const std::shared_ptr<const render_sc
   return result;
 }
 
-void WorldOcclusion::update(const render_scene::RenderScene &scene)
+bool WorldOcclusion::update(const render_scene::RenderScene &scene, bool has_probes)
 {
   const std::vector<scene::Bounds> changed = casters_.update(scene);
   const scene::Bounds bounds_ws = scene.bounds();
   if (casters_.empty()) {
+    const bool has_blocked = probe_count() > 0;
     count_ = glm::ivec3(0);
-    return;
+    world_ = scene.world();
+    return has_blocked;
   }
+  bool is_changed = !changed.empty();
   if (probe_count() == 0 || bounds_ws.min != bounds_ws_.min || bounds_ws.max != bounds_ws_.max) {
     place(bounds_ws);
     hits_.assign(std::size_t(probe_count()) * probe_rays, RayHit::None);
     trace(std::span(&bounds_ws, 1));
+    is_changed = true;
   }
-  else {
+  else if (is_changed) {
     trace(changed);
   }
-  add_up(*scene.world());
+  if (world_ != scene.world() || rays_.size() != hits_.size()) {
+    world_ = scene.world();
+    light_rays();
+    is_changed = true;
+  }
+  if (is_changed) {
+    probes_.clear();
+  }
+  if (has_probes && probes_.empty()) {
+    add_up();
+  }
+  return is_changed;
 }
 
 void WorldOcclusion::write(shared::WorldBlock &block) const

@@ -24,17 +24,17 @@ namespace gnomon::eevee {
 class WorldOcclusion {
  public:
   /**
-   * Trace the rays that changed casters can have changed, and add up the world's light over the others.
-   * \pre the scene has a world
+   * Trace the rays that changed casters can have changed. \a has_probes: also add up the world's light over those that
+   * meet nothing, for write(). \return whether directions() and the probes may be others \pre the scene has a world
    */
-  void update(const render_scene::RenderScene &scene);
-  /** Write the probes to the members of \a block that have them. */
+  bool update(const render_scene::RenderScene &scene, bool has_probes = true);
+  /** Write the probes to the members of \a block that have them. \pre the last update() had probes */
   void write(shared::WorldBlock &block) const;
   /**
-   * Directions of the rest of \a world, that of the last update(). Those from which more light arrives at the probes
-   * are more frequent. \pre the rest is not black
+   * Directions of the rest of the last update()'s world. Those from which more light arrives at the probes are more
+   * frequent. \pre the rest is not black
    */
-  [[nodiscard]] WorldDirections directions(const std::shared_ptr<const render_scene::WorldLight> &world) const;
+  [[nodiscard]] WorldDirections directions() const;
   /** Number of probes; 0 if nothing blocks the light. */
   [[nodiscard]] int probe_count() const
   {
@@ -56,7 +56,9 @@ class WorldOcclusion {
   };
   void place(const scene::Bounds &bounds_ws);
   void trace(std::span<const scene::Bounds> changed);
-  void add_up(const render_scene::WorldLight &world);
+  /** Set `rays_`. */
+  void light_rays();
+  void add_up();
   [[nodiscard]] glm::ivec3 place_of(std::size_t probe) const;
 
   CasterTree casters_;
@@ -65,8 +67,18 @@ class WorldOcclusion {
   /** Position of the first probe, and the distances between probes along the axes, metres. */
   glm::vec3 first_ws_{0.0F};
   glm::vec3 step_{1.0F};
-  /** By probe and ray. */
+  /** What the world sends along a ray. */
+  struct Ray {
+    /** Of the grid of directions(). */
+    std::uint16_t cell = 0;
+    float luminance = 0.0F;
+  };
+  /** The world of `rays_`. */
+  std::shared_ptr<const render_scene::WorldLight> world_;
+  /** By probe and ray, as `hits_`. */
+  std::vector<Ray> rays_;
   std::vector<RayHit> hits_;
+  /** Empty: to be added up. */
   std::vector<Probe> probes_;
   glm::vec3 whole_positive_{0.0F};
   glm::vec3 whole_negative_{0.0F};

@@ -175,7 +175,7 @@ class MaterialReader {
       }
     });
     if (moved_.contains(strength_path)) {
-      moving_.emissive = glm::vec3(vec3(source_.emissive));
+      moving_.emissive = glm::max(moving_.emissive, glm::vec3(vec3(source_.emissive)));
     }
   }
 

@@ -137,7 +137,7 @@ TEST_F(WorldOcclusionTest, MoreDirectionsPassThroughAnOpeningAndBringTheSameLigh
   WorldOcclusion occlusion;
   static_cast<void>(traced(occlusion));
   const Arriving even = arriving(rendered.world()->rest_directions);
-  const Arriving chosen = arriving(*occlusion.directions(rendered.world()).distribution);
+  const Arriving chosen = arriving(*occlusion.directions().distribution);
   const double expected = 4.0 * corner_form_factor(2.0, 2.0, 4.0);
   // About 80 of them arrive: the error seen is 0.034.
   EXPECT_NEAR(even.floor, expected, 0.05 * expected);
