@@ -15,6 +15,7 @@
 
 #include <set>
 #include <stdexcept>
+#include <type_traits>
 
 namespace gnomon::cli {
 
@@ -34,9 +35,20 @@ static void add_variants(std::span<const Declaration> declarations, std::span<co
                          std::vector<Variant> &variants)
 {
   for (const Declaration &declaration : declarations) {
-    for (const auto features : shader_variants(declaration)) {
-      variants.push_back({declaration.purpose, shader_desc(declaration, features),
+    const auto add = [&](auto features, auto constants) {
+      variants.push_back({declaration.purpose, shader_desc(declaration, features | constants),
                           interfaces[std::size_t(declaration.id)].interface_of(std::uint32_t(features))});
+    };
+    const auto masks = shader_variants(declaration);
+    for (const auto features : masks) {
+      add(features, decltype(features)());
+    }
+    // The code of constants is in none of these variants. It reads nothing that they do not read.
+    if constexpr (std::is_same_v<Declaration, eevee::ShaderDeclaration>) {
+      const eevee::Feature constants = eevee::constants_of(declaration, masks.back());
+      if (constants != eevee::Feature::None) {
+        add(masks.back(), constants);
+      }
     }
   }
 }

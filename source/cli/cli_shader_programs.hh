@@ -40,7 +40,10 @@ struct Variant {
   gpu::ShaderInterface interface;
 };
 
-/** The variants of all engines; variants of one program follow each other. */
+/**
+ * The variants of all engines; variants of one program follow each other. The last one of a program that has constants
+ * (eevee::constants_of) has all of them.
+ */
 [[nodiscard]] std::vector<Variant> engine_variants();
 /** The C++ layouts of the blocks of all engines. */
 [[nodiscard]] const std::vector<gpu::BlockLayout> &engine_blocks();

@@ -46,7 +46,8 @@ View View::with_clip_planes(std::vector<glm::vec4> planes) const
     throw gpu::Error("view: {} clip planes are more than the {} that it can have", planes.size(), clip_plane_max);
   }
   for (std::size_t i = 0; i < planes.size(); i++) {
-    if (!std::isfinite(planes[i].x + planes[i].y + planes[i].z + planes[i].w)) {
+    const glm::vec4 &plane = planes[i];
+    if (!std::isfinite(plane.x) || !std::isfinite(plane.y) || !std::isfinite(plane.z) || !std::isfinite(plane.w)) {
       throw gpu::Error("view: clip plane {} is not finite", i);
     }
   }

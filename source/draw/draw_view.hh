@@ -83,7 +83,10 @@ class ObjectSet {
   std::shared_ptr<const std::vector<std::uint8_t>> flags_;
 };
 
-/** Position, direction, projection and lens from which a pass is drawn, and what is left out. */
+/**
+ * Position, direction, projection and lens from which a pass is drawn, and the objects and half-spaces that are left
+ * out.
+ */
 class View {
  public:
   /** The most planes of with_clip_planes(). */
@@ -120,7 +123,7 @@ class View {
   [[nodiscard]] View with_hidden(ObjectSet hidden) const;
   /**
    * Pictures of this view show the parts of surfaces on one side of each of these planes: the points p with
-   * dot(plane, (p, 1)) >= 0. What is cut open shows the backs of two-sided materials. Light and shadows of a picture
+   * dot(plane, (p, 1)) >= 0. A cut surface shows the backs of two-sided materials. Light and shadows of a picture
    * are those of the whole scene. World space, metres, as view_from_world().
    */
   [[nodiscard]] const std::vector<glm::vec4> &clip_planes() const
@@ -129,7 +132,7 @@ class View {
   }
   /** The same view with other clip_planes(). \throws gpu::Error if they are too many, or one is not finite. */
   [[nodiscard]] View with_clip_planes(std::vector<glm::vec4> planes) const;
-  /** A view from these matrices that leaves out the same as this one. */
+  /** A view from these matrices with the hidden objects and clip planes of this one. */
   [[nodiscard]] View with_matrices(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view,
                                    const Lens &lens = {}) const;
   [[nodiscard]] bool is_perspective() const

@@ -20,9 +20,12 @@ std::vector<Packed> packed(std::span<const glm::vec4> values, std::size_t count,
   return result;
 }
 
-/** Call \a use with the streams of \a range, as they are on the device, without indices. */
+/**
+ * Call \a use with the streams of \a range, as they are on the device, without indices. \a has_absent: also with those
+ * of \a streams that the mesh does not have. Their values never change.
+ */
 template <typename Use>
-void use_streams(const scene::Mesh &mesh, MeshStreams streams, scene::VertexRange range, Use &&use)
+void use_streams(const scene::Mesh &mesh, MeshStreams streams, bool has_absent, scene::VertexRange range, Use &&use)
 {
   const auto part = [&](const auto &stream) {
     return std::span(stream).subspan(stream.empty() ? 0 : range.first, stream.empty() ? 0 : range.count);
@@ -35,13 +38,14 @@ void use_streams(const scene::Mesh &mesh, MeshStreams streams, scene::VertexRang
     use(desc);
     return;
   }
-  const std::vector<glm::vec2> zeros(mesh.uvs.empty() || mesh.second_uvs.empty() ? range.count : 0, glm::vec2(0.0F));
+  const std::size_t absent_count = has_absent ? range.count : 0;
+  const std::vector<glm::vec2> zeros(mesh.uvs.empty() || mesh.second_uvs.empty() ? absent_count : 0, glm::vec2(0.0F));
   desc.uvs = mesh.uvs.empty() ? zeros : part(mesh.uvs);
   desc.second_uvs = mesh.second_uvs.empty() ? zeros : part(mesh.second_uvs);
   const auto tangents =
-      packed<glm::i16vec4>(part(mesh.tangents), range.count, glm::i16vec4(0),
+      packed<glm::i16vec4>(part(mesh.tangents), absent_count, glm::i16vec4(0),
                            [](const glm::vec4 &tangent) { return glm::packSnorm<glm::int16>(tangent); });
-  const auto colors = packed<glm::u16vec4>(part(mesh.colors), range.count, glm::u16vec4(65535),
+  const auto colors = packed<glm::u16vec4>(part(mesh.colors), absent_count, glm::u16vec4(65535),
                                            [](const glm::vec4 &color) { return glm::packUnorm<glm::uint16>(color); });
   desc.tangents = tangents;
   desc.colors = colors;
@@ -51,7 +55,7 @@ void use_streams(const scene::Mesh &mesh, MeshStreams streams, scene::VertexRang
 gpu::Batch make_batch(gpu::Device &device, const scene::Mesh &mesh, MeshStreams streams)
 {
   gpu::Batch batch;
-  use_streams(mesh, streams, {0, std::uint32_t(mesh.positions.size())}, [&](gpu::BatchDesc &desc) {
+  use_streams(mesh, streams, true, {0, std::uint32_t(mesh.positions.size())}, [&](gpu::BatchDesc &desc) {
     desc.indices = mesh.indices;
     batch = device.create_batch(desc);
   });
@@ -86,7 +90,7 @@ void Meshes::write_changes(gpu::Device &device, const scene::Scene &scene, Entry
     return;
   }
   for (const scene::VertexRange range : scene.changed_vertices(entry.handle, entry.shape)) {
-    use_streams(scene.meshes()[entry.handle], entry.streams, range,
+    use_streams(scene.meshes()[entry.handle], entry.streams, false, range,
                 [&](const gpu::BatchDesc &values) { device.update(entry.batch, range.first, values); });
   }
   entry.shape = shape;
@@ -96,14 +100,19 @@ void Meshes::upload(gpu::Device &device, const scene::Scene &scene)
 {
   using enum scene::Mesh::Aspect;
   const scene::Pool<scene::Mesh> &meshes = scene.meshes();
-  const bool is_lost = std::exchange(loss_count_, device.loss_count()) != device.loss_count();
-  if (!is_lost && uploaded_shape_ == meshes.latest(Shape)) {
+  if (std::exchange(loss_count_, device.loss_count()) != device.loss_count()) {
+    // All changes since a batch was made may be lost. They stay to be written if this call fails.
+    for (Entry &entry : entries_) {
+      entry.shape = entry.made;
+    }
+    uploaded_shape_ = 0;
+  }
+  if (uploaded_shape_ == meshes.latest(Shape)) {
     return;
   }
   for (Entry &entry : entries_) {
     if (entry.batch && entry.host_resource == 0 && meshes.is_live(entry.handle) &&
         entry.layout == meshes.revision(entry.handle, Layout)) {
-      entry.shape = is_lost ? 0 : entry.shape;
       write_changes(device, scene, entry);
     }
   }
@@ -127,7 +136,7 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Scene &scene, sc
     GNOMON_ASSERT(host, "mesh '{}': the host has named no buffers of it", mesh.name);
     const std::uint64_t resource = host_batches_.resource_revision(handle);
     if (!is_same || entry.host_resource != resource) {
-      entry = {make_host_batch(device, mesh, *host), handle, shape, layout, resource, MeshStreams::All};
+      entry = {make_host_batch(device, mesh, *host), handle, shape, shape, layout, resource, MeshStreams::All};
     }
   }
   else if (!is_same || streams > entry.streams) {
@@ -137,7 +146,7 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Scene &scene, sc
     if (is_same) {
       outgrown_.push_back(std::move(entry.batch));
     }
-    entry = {std::move(batch), handle, shape, layout, 0, all};
+    entry = {std::move(batch), handle, shape, shape, layout, 0, all};
   }
   else {
     write_changes(device, scene, entry);

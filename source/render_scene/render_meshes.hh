@@ -68,7 +68,10 @@ class Meshes {
   struct Entry {
     gpu::Batch batch;
     scene::Handle<scene::Mesh> handle;
+    /** The shape whose values the batch has. */
     scene::Revision shape = 0;
+    /** The shape with which the batch was made. Unless it is empty, it has these values or later ones. */
+    scene::Revision made = 0;
     scene::Revision layout = 0;
     /** The number in `host_batches_`; 0: the mesh was uploaded. */
     std::uint64_t host_resource = 0;
@@ -78,7 +81,7 @@ class Meshes {
 
   /** Indexed by Handle::index. */
   std::vector<Entry> entries_;
-  /** The latest shape at the last upload(). */
+  /** The latest shape at the last upload(); 0: since a loss, no upload() has written all. */
   scene::Revision uploaded_shape_ = 0;
   /** gpu::Device::loss_count at the last upload(). */
   std::uint64_t loss_count_ = 0;

@@ -83,7 +83,8 @@ TEST_F(ShadersTest, AProgramOfTheEngineIsCleanInAllVariants)
   const Finished finished = run("shaders check --program eevee_depth");
   EXPECT_EQ(finished.status, 0);
   const auto program = std::ranges::find(eevee::shader_declarations(), "eevee_depth", &eevee::ShaderDeclaration::name);
-  const std::string variants = std::to_string(eevee::shader_variants(*program).size());
+  // One more has clip planes.
+  const std::string variants = std::to_string(eevee::shader_variants(*program).size() + 1);
   EXPECT_EQ(
       finished.out.find("1 programs, " + variants + " variants, OpenGL 4.5 and Vulkan 1.2: 0 errors, 0 warnings, "), 0U)
       << finished.out;
@@ -210,6 +211,20 @@ INSTANTIATE_TEST_SUITE_P(
                 "eevee/eevee_depth_frag.glsl",
                 "float planted",
                 "'undeclared_name' : undeclared identifier [compile] (eevee_depth, "},
+        Planted{"OnlyWithClipPlanes",
+                "eevee_depth",
+                {{"draw/draw_clip_lib.glsl", "bool is_clipped()\n{\n",
+                  "bool is_clipped()\n{\n  float planted = undeclared_name;\n"}},
+                "draw/draw_clip_lib.glsl",
+                "float planted",
+                "'undeclared_name' : undeclared identifier [compile] (eevee_depth"},
+        Planted{"OnlyWithACoarseGrid",
+                "eevee_gbuffer",
+                {{"eevee/eevee_gbuffer_frag.glsl", "#ifdef HAS_COARSE_GRID\n",
+                  "#ifdef HAS_COARSE_GRID\n  float planted = undeclared_name;\n"}},
+                "eevee/eevee_gbuffer_frag.glsl",
+                "float planted",
+                "'undeclared_name' : undeclared identifier [compile] (eevee_gbuffer"},
         Planted{"VulkanOnly",
                 "eevee_tonemap",
                 {{"draw/draw_target_frag.glsl", "layout(location = 0) out vec4 display;\n",
@@ -305,7 +320,7 @@ TEST_F(ShadersTest, ReflectPrintsBlocksTexturesAndStageVariables)
   };
   const nlohmann::json view = find("bindings", "view_block");
   EXPECT_EQ(view["kind"], "uniform");
-  EXPECT_EQ(view["size"], 160);
+  EXPECT_EQ(view["size"], 256);
   EXPECT_EQ(view["members"][1], nlohmann::json({{"name", "view.position_ws"},
                                                 {"type", "vec3"},
                                                 {"offset", 64},
@@ -582,11 +597,12 @@ TEST_F(ShadersTest, WarningsDoNotFail)
 TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
 {
   copy_tree();
-  replace("eevee/eevee_depth_frag.glsl", "    discard;\n", "    float planted = undeclared_name;\n");
+  replace("eevee/eevee_depth_frag.glsl", "is_open) {\n    discard;\n",
+          "is_open) {\n    float planted = undeclared_name;\n");
   const Finished finished = run("shaders check --shaders tree --program eevee_depth --format json");
   EXPECT_EQ(finished.status, 1);
   const nlohmann::json json = nlohmann::json::parse(finished.out);
-  EXPECT_EQ(json["variants"], 3) << "without a mask, with one, and with one of a full material";
+  EXPECT_EQ(json["variants"], 4) << "without a mask, with one, with one of a full material, and this with clip planes";
   EXPECT_EQ(json["errors"], 1);
   ASSERT_EQ(json["messages"].size(), 1U);
   const nlohmann::json &message = json["messages"][0];
@@ -594,7 +610,7 @@ TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
   EXPECT_EQ(message["file"], "tree/eevee/eevee_depth_frag.glsl");
   EXPECT_EQ(message["line"], line_of(read("tree/eevee/eevee_depth_frag.glsl"), "planted"));
   EXPECT_EQ(message["rule"], "compile");
-  EXPECT_EQ(message["where"].size(), 4) << "two variants, two targets";
+  EXPECT_EQ(message["where"].size(), 6) << "three variants, two targets";
   for (const nlohmann::json &where : message["where"]) {
     EXPECT_NE(where["variant"].get<std::string>().find("USE_ALPHA_MASK"), std::string::npos);
   }

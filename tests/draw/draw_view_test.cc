@@ -286,7 +286,9 @@ TEST(View, KeepsItsClipPlanesAndRefusesTooMany)
   EXPECT_EQ(view.with_matrices(glm::mat4(2), glm::mat4(1)).clip_planes(), view.clip_planes());
   EXPECT_NO_THROW(static_cast<void>(View().with_clip_planes(std::vector<glm::vec4>(6))));
   EXPECT_THROW(static_cast<void>(View().with_clip_planes(std::vector<glm::vec4>(7))), gpu::Error);
+  EXPECT_NO_THROW(static_cast<void>(View().with_clip_planes({glm::vec4(std::numeric_limits<float>::max())})));
   EXPECT_THROW(static_cast<void>(View().with_clip_planes({{NAN, 0, 0, 1}})), gpu::Error);
+  EXPECT_THROW(static_cast<void>(View().with_clip_planes({{0, 0, 0, -INFINITY}})), gpu::Error);
 }
 
 }  // namespace

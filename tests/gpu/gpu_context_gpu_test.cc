@@ -38,20 +38,33 @@ struct SmallScene {
 
   std::vector<glm::vec4> drawn()
   {
+    draw(State::WriteColor | State::WriteDepth | State::DepthNearerEqual | State::CullBack | State::BlendAdd |
+             State::DepthClamp,
+         full);
+    EXPECT_EQ(gpu::read_as<float>(device, depth), std::vector<float>(16, 0.25F));
+    return gpu::read_as<glm::vec4>(device, picture);
+  }
+
+  /** Depths of the edges of a triangle, 0 beside them. */
+  std::vector<float> edge_depths()
+  {
+    draw(State::WriteDepth | State::DepthNearerEqual | State::Wireframe, corner);
+    return gpu::read_as<float>(device, depth);
+  }
+
+  void draw(State state, const Batch &batch)
+  {
     CommandList list;
     list.begin_pass("p", framebuffer, {});
     list.set_shader(shader.id());
-    list.set_state(State::WriteColor | State::WriteDepth | State::DepthNearerEqual | State::CullBack | State::BlendAdd |
-                   State::DepthClamp);
+    list.set_state(state);
     list.bind_uniform(9, {block.id()});
     list.bind_storage(0, {store.id()});
     list.bind_texture(16, source.id(), sampler.id());
     test::push_constants(list, shader, glm::vec4(100, 200, 300, 400));
-    test::append_draw(list, full);
+    test::append_draw(list, batch);
     list.end_pass();
     device.submit(list);
-    EXPECT_EQ(gpu::read_as<float>(device, depth), std::vector<float>(16, 0.25F));
-    return gpu::read_as<glm::vec4>(device, picture);
   }
 
   Device &device;
@@ -63,6 +76,11 @@ struct SmallScene {
   Buffer store = device.create_buffer({"store", BufferKind::Storage, 16});
   Framebuffer framebuffer = device.create_framebuffer({"p", {{&picture}}, {&depth}});
   Batch full = test::full_triangle(device, 0.25F);
+  static constexpr std::array corner_positions = {glm::vec3(-0.6F, -0.6F, 0.25F), glm::vec3(0.6F, -0.6F, 0.25F),
+                                                  glm::vec3(-0.6F, 0.6F, 0.25F)};
+  static constexpr std::array<std::uint32_t, 3> corner_indices = {0, 1, 2};
+  Batch corner =
+      device.create_batch({.name = "corner", .positions = corner_positions, .normals = {}, .indices = corner_indices});
   Shader shader = make_shader(device, "all", test::CLIP_SPACE_VERT, R"(
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
@@ -264,9 +282,13 @@ TEST_F(HostContextGpu, StateOfTheHostDoesNotReachThePicture)
       {"polygon offset",
        [] {
          glEnable(GL_POLYGON_OFFSET_FILL);
+         glEnable(GL_POLYGON_OFFSET_LINE);
          glPolygonOffset(0, 1e6F);
        },
-       [] { glDisable(GL_POLYGON_OFFSET_FILL); }},
+       [] {
+         glDisable(GL_POLYGON_OFFSET_FILL);
+         glDisable(GL_POLYGON_OFFSET_LINE);
+       }},
       {"discard", [] { glEnable(GL_RASTERIZER_DISCARD); }, [] { glDisable(GL_RASTERIZER_DISCARD); }},
       {"primitive restart",
        [] {
@@ -294,11 +316,15 @@ TEST_F(HostContextGpu, StateOfTheHostDoesNotReachThePicture)
   glBindBuffer(GL_ARRAY_BUFFER, buffer);
   glBufferData(GL_ARRAY_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, 0);
+  const std::vector<float> edges = SmallScene(*device).edge_depths();
+  EXPECT_EQ(*std::ranges::max_element(edges), 0.25F);
   for (const Hostility &hostility : hostilities) {
     SCOPED_TRACE(hostility.name);
     hostility.set();
     try {
-      EXPECT_EQ(small_picture(*device), SMALL_PICTURE);
+      SmallScene scene(*device);
+      EXPECT_EQ(scene.drawn(), SMALL_PICTURE);
+      EXPECT_EQ(scene.edge_depths(), edges);
     }
     catch (const Error &error) {
       ADD_FAILURE() << error.what();

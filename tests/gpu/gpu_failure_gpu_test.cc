@@ -308,7 +308,7 @@ TEST(TimerTicks, WrapAtTheBitsOfTheCounter)
 }
 
 /** Also without debug messages, for debuggers such as RenderDoc and apitrace. */
-TEST_F(FailureGpu, EveryObjectAndEveryPassHasAName)
+TEST_F(FailureGpu, EveryResourceAndEveryPassHasAName)
 {
   const Batch batch = test::full_triangle(*device, 0.5F);
   expect_drawn(batch, 0.25F);

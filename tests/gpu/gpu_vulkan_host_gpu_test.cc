@@ -540,6 +540,7 @@ struct VulkanNames {
   static inline PFN_vkGetInstanceProcAddr loader = nullptr;
   static inline std::map<VkObjectType, std::vector<std::string>> objects;
   static inline std::vector<std::string> groups;
+  static inline int open_groups = 0;
 
   static VkResult VKAPI_PTR name_object(VkDevice /*device*/, const VkDebugUtilsObjectNameInfoEXT *info)
   {
@@ -549,18 +550,23 @@ struct VulkanNames {
   static void VKAPI_PTR begin(VkCommandBuffer /*commands*/, const VkDebugUtilsLabelEXT *label)
   {
     groups.emplace_back(label->pLabelName);
+    open_groups++;
+  }
+  static void VKAPI_PTR end(VkCommandBuffer /*commands*/)
+  {
+    open_groups--;
   }
   static PFN_vkVoidFunction VKAPI_PTR load(VkInstance instance, const char *name)
   {
     const std::string_view wanted(name);
     return wanted == "vkSetDebugUtilsObjectNameEXT"   ? reinterpret_cast<PFN_vkVoidFunction>(&name_object)
            : wanted == "vkCmdBeginDebugUtilsLabelEXT" ? reinterpret_cast<PFN_vkVoidFunction>(&begin)
-           : wanted == "vkCmdEndDebugUtilsLabelEXT"   ? nullptr
+           : wanted == "vkCmdEndDebugUtilsLabelEXT"   ? reinterpret_cast<PFN_vkVoidFunction>(&end)
                                                       : loader(instance, name);
   }
 };
 
-TEST_F(VulkanHostGpu, EveryObjectAndEveryPassHasANameForDebuggers)
+TEST_F(VulkanHostGpu, EveryResourceAndEveryPassHasANameForDebuggers)
 {
   VulkanNames::loader = host->loader;
   VulkanHost handles = host->handles();
@@ -577,6 +583,7 @@ TEST_F(VulkanHostGpu, EveryObjectAndEveryPassHasANameForDebuggers)
   device->submit(picture.list(framebuffer, {}));
   device->time_end(timer);
   EXPECT_EQ(VulkanNames::groups, std::vector<std::string>{"picture"});
+  EXPECT_EQ(VulkanNames::open_groups, 0);
   for (const auto &[type, name] :
        std::vector<std::pair<VkObjectType, std::string>>{{VK_OBJECT_TYPE_IMAGE, "picture"},
                                                          {VK_OBJECT_TYPE_IMAGE_VIEW, "framebuffer 'fb'"},

@@ -139,17 +139,28 @@ TEST_F(RenderSceneTest, AMeshIsUploadedOnceAndAgainWhereItsShapeChanged)
   EXPECT_EQ(uploads_of_batch(mesh), 0U);
 }
 
+/** Vertices on a line, with uvs. */
+scene::Mesh long_mesh(std::size_t count)
+{
+  scene::Mesh mesh;
+  for (std::size_t i = 0; i < count; i++) {
+    mesh.positions.emplace_back(0.01F * float(i), 0, 0);
+  }
+  mesh.normals.assign(count, {0, 0, 1});
+  mesh.uvs.assign(count, glm::vec2(0));
+  mesh.indices = {0, 1, 2};
+  return mesh;
+}
+
+void move_vertex(scene::Scene &scene, scene::Handle<scene::Mesh> mesh, std::uint32_t vertex, const glm::vec3 &position)
+{
+  scene.set_vertices(mesh, {.vertices = std::span(&vertex, 1), .positions = std::span(&position, 1)});
+}
+
 TEST_F(RenderSceneTest, OtherValuesOfVerticesAreWrittenIntoTheBatchThatPassesDraw)
 {
   constexpr std::size_t count = 1000;
-  scene::Mesh long_mesh;
-  for (std::size_t i = 0; i < count; i++) {
-    long_mesh.positions.emplace_back(0.01F * float(i), 0, 0);
-  }
-  long_mesh.normals.assign(count, {0, 0, 1});
-  long_mesh.uvs.assign(count, glm::vec2(0));
-  long_mesh.indices = {0, 1, 2};
-  const auto edited = scene.add(long_mesh);
+  const auto edited = scene.add(long_mesh(count));
   const auto node = add_object(scene, edited, glm::dmat4(1.0));
   render_scene.update();
   const gpu::ResourceId id = render_scene.batch(edited, MeshStreams::Uvs).id();
@@ -157,7 +168,7 @@ TEST_F(RenderSceneTest, OtherValuesOfVerticesAreWrittenIntoTheBatchThatPassesDra
   const std::uint64_t passes = render_scene.passes_revision();
   const std::uint64_t content = render_scene.content_revision();
   const auto move = [&](std::uint32_t vertex, const glm::vec3 &position) {
-    scene.set_vertices(edited, {.vertices = std::span(&vertex, 1), .positions = std::span(&position, 1)});
+    move_vertex(scene, edited, vertex, position);
   };
   constexpr std::size_t block_bytes = 64 * (2 * sizeof(glm::vec3) + sizeof(glm::vec2));
   EXPECT_EQ(uploaded_by([&] {
@@ -181,23 +192,37 @@ TEST_F(RenderSceneTest, OtherValuesOfVerticesAreWrittenIntoTheBatchThatPassesDra
   EXPECT_EQ(render_scene.content_revision(), content + 3);
   EXPECT_EQ(render_scene.object(object_of(node)).bounds, scene.meshes()[edited].bounds);
   EXPECT_EQ(uploads_of_batch(edited, MeshStreams::All), count * (2 * 12 + 4 * 8) + 12) << "a batch with more streams";
+  EXPECT_EQ(uploaded_by([&] { move(71, {0.71F, 0.0004F, 0}); }), block_bytes) << "streams that the mesh has not stay";
 }
 
 TEST_F(RenderSceneTest, VerticesOfALostPacketAreWrittenAgain)
 {
-  static_cast<void>(render_scene.batch(mesh, MeshStreams::Shape));
-  uploaded_by([] {});
+  const auto still = add_square_mesh(scene, material);
+  const auto brushed = scene.add(long_mesh(1000));
+  for (const auto handle : {mesh, still, brushed}) {
+    static_cast<void>(render_scene.batch(handle, MeshStreams::Shape));
+  }
+  uploaded_by([&] { move_vertex(scene, brushed, 500, {5, 1, 0}); });
   {
     gpu::Packet lost;
     const gpu::Recording recording(*device, lost);
     scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].z = 1.0F; });
+    move_vertex(scene, brushed, 70, {0.7F, 1, 0});
     render_scene.update();
     render_scene.upload(MaterialClass::Plain);
   }
-  const auto batch_bytes = [&] { return device->live(*render_scene.meshes().find(mesh)).upload_bytes; };
-  const std::uint64_t before = batch_bytes();
+  const auto batch_bytes = [&](scene::Handle<scene::Mesh> handle) {
+    return device->live(*render_scene.meshes().find(handle)).upload_bytes;
+  };
+  const std::array before = {batch_bytes(mesh), batch_bytes(still), batch_bytes(brushed)};
   uploaded_by([] {});
-  EXPECT_EQ(batch_bytes(), before + 4 * 2 * sizeof(glm::vec3));
+  constexpr std::size_t vertex_bytes = 2 * sizeof(glm::vec3);
+  EXPECT_EQ(batch_bytes(mesh), before[0] + 4 * vertex_bytes);
+  EXPECT_EQ(batch_bytes(still), before[1]) << "never written";
+  EXPECT_EQ(batch_bytes(brushed), before[2] + std::size_t(2 * 64) * vertex_bytes) << "changes since the batch was made";
+  const std::uint64_t after = batch_bytes(brushed);
+  uploaded_by([] {});
+  EXPECT_EQ(batch_bytes(brushed), after);
 }
 
 TEST_F(RenderSceneTest, AMeshGetsTextureCoordinatesWhereTheyAreReadAndKeepsThem)

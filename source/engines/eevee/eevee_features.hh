@@ -73,7 +73,7 @@ GNOMON_MASK_OPERATORS(Feature)
 /** At least one lamp has a shadow. */
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
-/** Constants of programs. They select no variant. */
+/** Constants of programs. They select no variant. \see constants_of */
 inline constexpr Feature program_constants =
     Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid | Feature::ClipPlanes;
 

@@ -223,6 +223,19 @@ Feature variant_of(const ShaderDeclaration &declaration, Feature features)
   return (has(features, Feature::Light) ? features : without(features, lit_features)) & declaration.features;
 }
 
+Feature constants_of(const ShaderDeclaration &declaration, Feature variant)
+{
+  const Feature lighting = (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
+                           (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None);
+  switch (declaration.id) {
+    case ShaderId::GBuffer: return lighting | Feature::ClipPlanes | Feature::CoarseGrid;
+    case ShaderId::Depth:
+    case ShaderId::DepthFunction:
+    case ShaderId::Lit: return lighting | Feature::ClipPlanes;
+    default: return lighting;
+  }
+}
+
 std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
 {
   std::vector<Feature> variants;

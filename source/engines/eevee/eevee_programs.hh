@@ -82,6 +82,9 @@ struct FeatureDefine {
 /** The mask of shader_variants that \a features, a result of with_variant, select for the program. */
 [[nodiscard]] Feature variant_of(const ShaderDeclaration &declaration, Feature features);
 
+/** The program_constants that \a variant, one of shader_variants, can have. */
+[[nodiscard]] Feature constants_of(const ShaderDeclaration &declaration, Feature variant);
+
 /** The feature masks of \a declaration that a scene can need, without impossible masks and without duplicates. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
 

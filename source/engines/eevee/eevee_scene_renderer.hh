@@ -126,7 +126,8 @@ class SceneRenderer {
 
   /**
    * Show only what is on the side of \a planes_ws with dot(plane, (p, 1)) >= 0: draw::View::clip_planes, in world space
-   * of the scene. Takes effect with the next draw, which throws gpu::Error if they are more than 6 or not finite.
+   * of the scene. Takes effect with the next draw or view_of, which throw gpu::Error if they are more than 6 or not
+   * finite.
    */
   void set_clip_planes(std::vector<glm::dvec4> planes_ws)
   {

@@ -85,13 +85,9 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature variant = variant_of(declaration, features);
-  const Feature constants = (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
-                            (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None) |
-                            Feature::ClipPlanes;
   // With 8 bits, positions from depths are off their plane by less than the normal offset of receivers.
-  const bool is_coarse = id == ShaderId::GBuffer && device.limits().subpixel_bits < 8;
-  const Feature grid = is_coarse ? Feature::CoarseGrid : Feature::None;
-  const Key key(id, variant | (features & constants) | grid, function.key);
+  const Feature grid = device.limits().subpixel_bits < 8 ? Feature::CoarseGrid : Feature::None;
+  const Key key(id, variant | ((features | grid) & constants_of(declaration, variant)), function.key);
   const auto found = shaders_.find(key);
   // The program is empty if the packet that contained its creation was lost.
   if (found != shaders_.end() && found->second->shader) {

@@ -171,7 +171,6 @@ class Overlay {
   render_scene::RenderScene &scene_;
   std::map<std::pair<ShaderId, Feature>, std::shared_ptr<gpu::SharedShader>> shaders_;
   gpu::Buffer view_block_;
-  /** Empty until a view has clip planes. */
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
   /** The objects of an outline. */

@@ -10,7 +10,7 @@ namespace gnomon::gpu {
 namespace {
 
 /** Capabilities that are disabled at the begin of a command list. Lists enable some of them. */
-constexpr std::array<GLenum, 27> used_capabilities = {
+constexpr std::array<GLenum, 28> used_capabilities = {
     GL_COLOR_LOGIC_OP,
     GL_CULL_FACE,
     GL_DEPTH_CLAMP,
@@ -19,6 +19,7 @@ constexpr std::array<GLenum, 27> used_capabilities = {
     GL_FRAMEBUFFER_SRGB,
     GL_LINE_SMOOTH,
     GL_POLYGON_OFFSET_FILL,
+    GL_POLYGON_OFFSET_LINE,
     GL_POLYGON_SMOOTH,
     GL_PRIMITIVE_RESTART,
     GL_PRIMITIVE_RESTART_FIXED_INDEX,

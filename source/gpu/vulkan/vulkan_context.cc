@@ -327,7 +327,9 @@ void VulkanContext::create_instance(bool is_debug)
     extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   }
   // RenderDoc and other layers show names. They offer the extension where no driver does.
-  else if (std::getenv("ENABLE_VULKAN_RENDERDOC_CAPTURE") || std::getenv("VK_INSTANCE_LAYERS")) {
+  const bool has_optional_names =
+      !is_debug && (std::getenv("ENABLE_VULKAN_RENDERDOC_CAPTURE") || std::getenv("VK_INSTANCE_LAYERS"));
+  if (has_optional_names) {
     extensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
   }
   if (window_) {
@@ -340,7 +342,14 @@ void VulkanContext::create_instance(bool is_debug)
   }
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
-  const VkResult result = instance_function<PFN_vkCreateInstance>("vkCreateInstance")(&info, nullptr, &instance_);
+  const auto create = instance_function<PFN_vkCreateInstance>("vkCreateInstance");
+  VkResult result = create(&info, nullptr, &instance_);
+  if (result == VK_ERROR_EXTENSION_NOT_PRESENT && has_optional_names) {
+    // The extension of the names is the first one.
+    info.enabledExtensionCount--;
+    info.ppEnabledExtensionNames++;
+    result = create(&info, nullptr, &instance_);
+  }
   if (result == VK_ERROR_LAYER_NOT_PRESENT) {
     throw Error("Vulkan: the validation layers are not installed ({})", validation_layer);
   }

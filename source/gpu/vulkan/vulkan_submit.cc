@@ -248,7 +248,6 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
   }
   const PassActions &actions = pass.actions;
   VkCommandBuffer commands = submissions_.commands();
-  context_->begin_label(commands, name);
   prepare_lookups(framebuffer, actions, used);
   const bool is_encoded = actions.is_srgb_encoded;
   std::vector<VkRenderingAttachmentInfo> colors;
@@ -290,6 +289,8 @@ void VulkanDevice::begin_pass(std::string_view name, const CommandList::PassInfo
   info.colorAttachmentCount = std::uint32_t(colors.size());
   info.pColorAttachments = colors.data();
   info.pDepthAttachment = framebuffer.depth ? &depth : nullptr;
+  // list_submit() closes the label only if list_.pass is set, so nothing in between may throw.
+  context_->begin_label(commands, name);
   context_->vk.vkCmdBeginRendering(commands, &info);
   list_.pass = &pass;
   const VkRect2D area = vulkan_rectangle(actions.viewport, framebuffer.size_px);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Edges of triangles instead of surfaces, and surfaces that one sees through.
+// Edges of triangles instead of surfaces, and half-transparent surfaces (x-ray).
 #include "overlay.hh"
 
 #include "draw_target.hh"
