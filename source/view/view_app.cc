@@ -227,6 +227,7 @@ void App::show_document(scene::Scene scene)
   time_line_.open(document_->scene());
   for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->show_all();
+    viewport->unclip();
     viewport->look_at(*document_);
   }
   const std::string &path = document_->scene().path;
