@@ -134,7 +134,7 @@ bool App::set_world_picture(const std::filesystem::path &path)
     message("No scene is open", false);
     return false;
   }
-  // Reverting a running transform would also undo the change of the picture.
+  // The transform is a step of its own.
   end_transform(true);
   document_->history().end_gesture();
   try {

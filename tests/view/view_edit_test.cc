@@ -411,24 +411,6 @@ TEST(ViewHistoryTest, JoinedChangesAreOneStepOfAnyLength)
   EXPECT_FALSE(history.undo(scene));
 }
 
-TEST(ViewHistoryTest, AGestureThatIsRevertedIsForgottenAndThoseBeforeItAreKept)
-{
-  scene::Scene scene;
-  History history;
-  const auto node = scene.add(Node{.name = "0"});
-  const auto rename = [&](const char *name) { history.edit(scene, node, [&](Node &edited) { edited.name = name; }); };
-  rename("1");
-  history.end_gesture();
-  history.revert_gesture(scene);
-  EXPECT_EQ(scene.nodes()[node].name, "1") << "there was nothing to revert";
-  rename("2");
-  rename("3");
-  history.revert_gesture(scene);
-  EXPECT_EQ(scene.nodes()[node].name, "1");
-  EXPECT_EQ(history.undo_count(), 1U);
-  EXPECT_EQ(history.redo_count(), 0U);
-}
-
 TEST(ViewAdditionsTest, WhatIsAddedIsReadBackAsItWasAndSurfacesFaceOutwards)
 {
   scene::Scene scene;
