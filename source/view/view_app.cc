@@ -326,18 +326,32 @@ void App::update_shaders()
   }
 }
 
+void App::step_history(bool (Document::*step)(), const char *nothing)
+{
+  if (!document_) {
+    return;
+  }
+  if (!((*document_).*step)()) {
+    message(nothing, false);
+    return;
+  }
+  // The step may restore matrices of another time.
+  try {
+    time_line_.pose_again(*document_);
+  }
+  catch (const scene::InvalidEdit &fault) {
+    message(fault.what(), true);
+  }
+}
+
 void App::undo()
 {
-  if (document_ && !document_->undo()) {
-    message("There is nothing to undo", false);
-  }
+  step_history(&Document::undo, "There is nothing to undo");
 }
 
 void App::redo()
 {
-  if (document_ && !document_->redo()) {
-    message("There is nothing to redo", false);
-  }
+  step_history(&Document::redo, "There is nothing to redo");
 }
 
 void App::frame(bool is_all)

@@ -85,9 +85,18 @@ bool Document::redo()
 void Document::pose(const scene::Animation &animation, double seconds)
 {
   end_transform(true);
-  const bool was_saved = is_saved();
-  scene::pose(scene_, animation, seconds);
-  saved_revision_ = was_saved ? scene_.revision() : saved_revision_;
+  const auto keep_saved = [this, was_saved = is_saved()] {
+    saved_revision_ = was_saved ? scene_.revision() : saved_revision_;
+  };
+  try {
+    scene::pose(scene_, animation, seconds);
+  }
+  catch (...) {
+    // A part of the scene may be posed.
+    keep_saved();
+    throw;
+  }
+  keep_saved();
 }
 
 void Document::toggle_visibility()

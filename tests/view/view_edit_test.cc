@@ -20,6 +20,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 
 namespace gnomon::view {
@@ -772,8 +773,47 @@ TEST(ViewTimeLineTest, PosesAreNoEditsAndPlayingBeginsAgainAfterTheEnd)
   EXPECT_FALSE(document.is_saved());
   line.step(document, 0.25);
   EXPECT_FALSE(document.is_saved());
+  // Time waits for a transform.
+  document.select(nodes[0]);
+  document.begin_transform({TransformKind::Move, TransformAxis::Y}, map_from(eye), {200, 150});
+  line.step(document, 0.25);
+  EXPECT_TRUE(document.operation());
+  EXPECT_EQ(line.seconds(), 0.25);
+  document.end_transform(false);
+  // The edit remembers the pose of another time.
+  document.history().end_gesture();
+  document.edit(nodes[0], [](Node &node) { node.parent_from_node[3].x = 9.0; });
+  TimeLine unused;
+  unused.open(document.scene());
+  unused.pose_again(document);
+  EXPECT_EQ(x(0), 9.0);
+  line.set_time(document, 1.5);
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(x(0), 0.5);
+  line.pose_again(document);
+  EXPECT_EQ(x(0), 3.0);
   line.open(scene::Scene());
   EXPECT_TRUE(line.is_empty());
+}
+
+TEST(ViewTimeLineTest, APoseThatFailsHalfwayLeavesASavedSceneSaved)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  scene::Animation animation;
+  for (const char *name : {"a", "b"}) {
+    scene::AnimatedNode animated;
+    animated.node = scene.add(Node{.name = name});
+    animated.translation_track =
+        std::make_shared<const scene::Track>(scene::Track{scene::Interpolation::Linear, 3, {0, 2}, {0, 0, 0, 4, 0, 0}});
+    animation.nodes.push_back(animated);
+  }
+  const Handle<Node> first = animation.nodes[0].node;
+  animation.nodes[1].scale = glm::dvec3(std::numeric_limits<double>::infinity());
+  Document document(*device, std::move(scene), default_settings());
+  EXPECT_THROW(document.pose(animation, 1.0), scene::InvalidEdit);
+  EXPECT_EQ(document.scene().nodes()[first].parent_from_node[3].x, 2.0) << "the part before the fault is posed";
+  EXPECT_TRUE(document.is_saved());
 }
 
 TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndone)
