@@ -137,10 +137,12 @@ bool Document::remove_selected()
 
 bool Document::duplicate_selected()
 {
+  end_transform(true);
   std::vector<scene::Handle<scene::Node>> copies;
+  NodeNames names(scene_);
   history_.join([&] {
     for (const scene::Handle<scene::Node> node : selected_roots()) {
-      copies.push_back(duplicate(scene_, node));
+      copies.push_back(duplicate(scene_, node, names));
       history_.note_added(scene_, copies.back());
     }
   });

@@ -422,7 +422,8 @@ TEST(ViewAdditionsTest, WhatIsAddedIsReadBackAsItWasAndSurfacesFaceOutwards)
       add(scene, addition, {0.1, -2.5, 3.7}, rigid);
     }
   }
-  const auto copied = duplicate(scene, (*scene.nodes().begin()).handle);
+  NodeNames taken(scene);
+  const auto copied = duplicate(scene, (*scene.nodes().begin()).handle, taken);
   EXPECT_EQ(scene.nodes()[copied].name, "Plane.002");
   for (const auto &[handle, mesh] : scene.meshes()) {
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -480,7 +481,8 @@ TEST(ViewAdditionsTest, ADuplicateHasItsDescendantsAndLampsOfItsOwn)
   const auto root = scene.add(Node{.name = "Root"});
   const auto lamp = scene.add(scene::Lamp{.name = "Lamp"});
   scene.add(Node{.name = "Lamp", .lamp = lamp}, root);
-  const auto copy = duplicate(scene, root);
+  NodeNames names(scene);
+  const auto copy = duplicate(scene, root, names);
   EXPECT_EQ(scene.nodes()[copy].name, "Root.001");
   const Node &child = scene.nodes()[scene.first_child(copy)];
   EXPECT_EQ(child.name, "Lamp.001");
@@ -730,6 +732,14 @@ TEST_F(ViewDocumentTransformTest, AllSelectedNodesAreDuplicatedAsOneStepEachOnce
   EXPECT_EQ(document->scene().nodes().size(), 7U) << "a, and b with its child";
   EXPECT_EQ(document->selection().size(), 2U);
   EXPECT_FALSE(document->is_selected(a) || document->is_selected(b));
+  document->select(a, true);
+  EXPECT_TRUE(document->duplicate_selected());
+  std::set<std::string> names;
+  for (const auto &[handle, node] : document->scene().nodes()) {
+    EXPECT_TRUE(names.insert(node.name).second) << node.name;
+  }
+  EXPECT_TRUE(names.contains("a.002") && names.contains("a.003") && names.contains("child.002"));
+  EXPECT_TRUE(document->undo());
   EXPECT_TRUE(document->undo());
   EXPECT_EQ(document->scene().nodes().size(), 4U);
   EXPECT_EQ(document->history().undo_count(), 0U);
