@@ -665,7 +665,7 @@ class ViewDocumentTransformTest : public testing::Test {
   ViewDocumentTransformTest()
   {
     scene::Scene made;
-    const auto parent = made.add(Node{.name = "parent", .parent_from_node = placed_at({1, 2, 3})});
+    parent = made.add(Node{.name = "parent", .parent_from_node = placed_at({1, 2, 3})});
     a = made.add(Node{.name = "a", .parent_from_node = placed_at(middle)});
     b = made.add(Node{.name = "b", .parent_from_node = placed_at({0.5, 0, 1})}, parent);
     child = made.add(Node{.name = "child", .parent_from_node = placed_at({0, 0.5, 0})}, b);
@@ -676,53 +676,150 @@ class ViewDocumentTransformTest : public testing::Test {
     return {document->scene().world_from_node(a), document->scene().world_from_node(b),
             document->scene().world_from_node(child)};
   }
-  void transform(TransformKind kind, std::string_view typed, bool is_kept)
+  void set_matrix(Handle<Node> node, const glm::dmat4 &matrix)
   {
-    document->begin_transform({kind, TransformAxis::Y}, map_from(eye), {200, 150});
+    document->edit(node, [&](Node &edited) { edited.parent_from_node = matrix; });
+    document->history().end_gesture();
+  }
+  void begin(TransformKind kind, std::string_view typed, Orientation orientation = Orientation::World)
+  {
+    document->begin_transform({kind, TransformAxis::Y, orientation}, map_from(eye), {200, 150});
     for (const char character : typed) {
       document->operation()->type(character);
       document->update_transform();
     }
+  }
+  void transform(TransformKind kind, std::string_view typed, bool is_kept)
+  {
+    begin(kind, typed);
     document->end_transform(is_kept);
   }
 
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
-  Handle<Node> a, b, child;
+  Handle<Node> parent, a, b, child;
   std::optional<Document> document;
 };
 
 TEST_F(ViewDocumentTransformTest, AllSelectedNodesMoveTurnAndScaleAroundTheOneOfTheGizmoAsOneStep)
 {
-  document->select(std::vector{a, b, child});
   const auto before = worlds();
-  const glm::dvec3 pivot(before[0][3]);
-  const auto around = [&](const glm::dmat4 &change) {
-    return glm::translate(glm::dmat4(1), pivot) * change * glm::translate(glm::dmat4(1), -pivot);
-  };
+  // A child follows its selected parent, also the child that has the gizmo.
+  for (const auto &[nodes, gizmo] : {std::pair(std::vector{a, b, child}, 0), {std::vector{child, b, a}, 2}}) {
+    document->select(nodes);
+    const glm::dvec3 pivot(before[std::size_t(gizmo)][3]);
+    const auto around = [&](const glm::dmat4 &change) {
+      return glm::translate(glm::dmat4(1), pivot) * change * glm::translate(glm::dmat4(1), -pivot);
+    };
+    for (const auto &[kind, typed, change] :
+         {std::tuple(TransformKind::Move, "1.5", glm::translate(glm::dmat4(1), {0, 1.5, 0})),
+          {TransformKind::Rotate, "90", around(glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0)))},
+          {TransformKind::Scale, "3", around(glm::scale(glm::dmat4(1), {1, 3, 1}))}}) {
+      transform(kind, typed, true);
+      const auto after = worlds();
+      for (std::size_t i = 0; i < 3; i++) {
+        EXPECT_LT(difference(after[i], change * before[i]), 1e-8) << typed << ' ' << i << ", gizmo at " << gizmo;
+      }
+      EXPECT_EQ(document->history().undo_count(), 1U);
+      EXPECT_TRUE(document->undo());
+      EXPECT_EQ(worlds(), before);
+      EXPECT_TRUE(document->redo());
+      EXPECT_EQ(worlds(), after);
+      EXPECT_TRUE(document->undo());
+      transform(kind, typed, false);
+      EXPECT_EQ(worlds(), before) << "not kept";
+      EXPECT_EQ(document->history().undo_count(), 0U);
+    }
+  }
+}
+
+TEST_F(ViewDocumentTransformTest, TheRoundingOfInversesMakesNoMatrixInvalid)
+{
+  set_matrix(a, glm::scale(glm::translate(glm::dmat4(1), middle), {7, 7, 1}));
+  set_matrix(parent, glm::scale(glm::rotate(glm::dmat4(1), 0.6, glm::normalize(glm::dvec3(1, 2, 3))), {7, 7, 1}));
+  const auto before = worlds();
+  // 49 * (1 / 49) is not 1 in floating point.
+  const glm::dmat4 inverse = glm::inverse(before[0]);
+  ASSERT_NE(inverse[3][3], 1.0);
+  document->select(std::vector{a, b});
+  for (const TransformKind kind : {TransformKind::Move, TransformKind::Rotate, TransformKind::Scale}) {
+    for (const Orientation orientation : {Orientation::World, Orientation::Local}) {
+      ASSERT_NO_THROW(begin(kind, "2", orientation));
+      const auto after = worlds();
+      EXPECT_GT(difference(after[0], before[0]), 0.01);
+      EXPECT_LT(difference(after[1], after[0] * inverse * before[1]), 1e-8) << int(kind) << ' ' << int(orientation);
+      document->end_transform(false);
+    }
+  }
+}
+
+TEST_F(ViewDocumentTransformTest, ANodeWithoutAnInverseMovesOthersAndThoseBelowItStay)
+{
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.7, glm::normalize(glm::dvec3(1, 2, 3)));
+  // Rounding leaves this one a determinant of about 1e-17.
+  const glm::dmat4 flat = turn * glm::scale(glm::dmat4(1), {1, 0, 1}) * turn;
+  set_matrix(a, flat);
+  const auto before = worlds();
+  document->select(std::vector{a, b});
   for (const auto &[kind, typed, change] :
        {std::tuple(TransformKind::Move, "1.5", glm::translate(glm::dmat4(1), {0, 1.5, 0})),
-        {TransformKind::Rotate, "90", around(glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0)))},
-        {TransformKind::Scale, "3", around(glm::scale(glm::dmat4(1), {1, 3, 1}))}}) {
-    transform(kind, typed, true);
-    const auto after = worlds();
+        {TransformKind::Rotate, "90", glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0))},
+        {TransformKind::Scale, "3", glm::scale(glm::dmat4(1), {1, 3, 1})}}) {
+    begin(kind, typed);
     for (std::size_t i = 0; i < 3; i++) {
-      EXPECT_LT(difference(after[i], change * before[i]), 1e-8) << typed << ' ' << i;
+      EXPECT_LT(difference(worlds()[i], change * before[i]), 1e-8) << typed << ' ' << i;
     }
-    EXPECT_EQ(document->history().undo_count(), 1U);
-    EXPECT_TRUE(document->undo());
-    EXPECT_EQ(worlds(), before);
-    EXPECT_TRUE(document->redo());
-    EXPECT_EQ(worlds(), after);
-    EXPECT_TRUE(document->undo());
-    transform(kind, typed, false);
-    EXPECT_EQ(worlds(), before) << "not kept";
-    EXPECT_EQ(document->history().undo_count(), 0U);
+    document->end_transform(false);
   }
-  // Below a selected node, the gizmo's alone moves.
-  document->select(std::vector{child, b});
-  transform(TransformKind::Move, "2", true);
-  EXPECT_EQ(worlds()[1], before[1]);
-  EXPECT_LT(difference(worlds()[2], glm::translate(glm::dmat4(1), {0, 2, 0}) * before[2]), 1e-8);
+  // Its own axes define no change for other nodes.
+  begin(TransformKind::Scale, "3", Orientation::Local);
+  EXPECT_GT(difference(worlds()[0], before[0]), 0.01);
+  EXPECT_LT(difference(worlds()[1], before[1]), 1e-8);
+  document->end_transform(false);
+
+  set_matrix(parent, flat);
+  const glm::dmat4 below = worlds()[1];
+  begin(TransformKind::Move, "1.5");
+  EXPECT_LT(difference(worlds()[0], glm::translate(glm::dmat4(1), {0, 1.5, 0}) * before[0]), 1e-8);
+  EXPECT_EQ(worlds()[1], below);
+}
+
+TEST_F(ViewDocumentTransformTest, EachTransformIsAStepOfItsOwnWhateverEndsIt)
+{
+  const auto before = worlds();
+  const auto is_at = [&](double height) {
+    return difference(worlds()[0], glm::translate(glm::dmat4(1), {0, height, 0}) * before[0]) < 1e-8;
+  };
+  document->select(a);
+  begin(TransformKind::Move, "1");
+  begin(TransformKind::Move, "1");
+  document->end_transform(true);
+  EXPECT_EQ(document->history().undo_count(), 2U);
+  EXPECT_TRUE(is_at(2.0));
+  EXPECT_TRUE(document->undo());
+  EXPECT_TRUE(is_at(1.0));
+
+  begin(TransformKind::Move, "1");
+  EXPECT_TRUE(document->undo());
+  EXPECT_FALSE(document->operation());
+  EXPECT_TRUE(is_at(1.0)) << "the running one is undone";
+  begin(TransformKind::Move, "1");
+  EXPECT_FALSE(document->redo()) << "a new step ends redo";
+  EXPECT_TRUE(is_at(2.0));
+  begin(TransformKind::Move, "1");
+  EXPECT_TRUE(document->duplicate_selected());
+  EXPECT_EQ(document->history().undo_count(), 4U);
+  begin(TransformKind::Move, "1");
+  EXPECT_TRUE(document->remove_selected());
+  EXPECT_EQ(document->history().undo_count(), 6U);
+
+  document->select(a);
+  begin(TransformKind::Move, "1");
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "transformed.glb";
+  document->save(path);
+  std::filesystem::remove(path);
+  document->end_transform(false);
+  EXPECT_TRUE(is_at(4.0));
+  EXPECT_TRUE(document->is_saved());
 }
 
 TEST_F(ViewDocumentTransformTest, AllSelectedNodesAreDuplicatedAsOneStepEachOnce)
