@@ -57,7 +57,7 @@ static void show_lamps(scene::Scene &scene)
   ImGui::End();
 }
 
-/** Move the vertices around the hit outwards. Of a large mesh, no others are uploaded. */
+/** Move the vertices around the hit outwards. In a large mesh, only these are uploaded. */
 static void sculpt(scene::Scene &scene, const overlay::Hit &hit)
 {
   const scene::Mesh &mesh = scene.meshes()[hit.mesh];

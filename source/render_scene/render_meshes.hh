@@ -21,7 +21,7 @@ enum class MeshStreams : std::uint8_t {
 
 /**
  * The meshes of a scene on one device. A mesh is uploaded when it is first drawn, and again after its layout has
- * changed or when a pass reads more of its streams. Of other changes of its shape, upload() writes the changed
+ * changed or when a pass reads more of its streams. After other changes of its shape, upload() writes the changed
  * vertices. Shapes in buffers of the host are drawn from these.
  */
 class Meshes {

@@ -291,13 +291,13 @@ class Scene {
   /** Vertices of a mesh that follow each other, at most vertex_block_size. */
   struct VertexBlock {
     Bounds bounds;
-    /** Of the last set_vertices() that changed one of them; 0: none did. */
+    /** Revision of the last set_vertices() that changed one of them; 0: none did. */
     Revision revision = 0;
   };
   static constexpr std::size_t vertex_block_size = 64;
   /** All vertices of a mesh. */
   struct VertexBlocks {
-    /** Of the last change of the shape that was no set_vertices(). */
+    /** Revision of the last change of the shape by another call than set_vertices(). */
     Revision shape = 0;
     std::vector<VertexBlock> blocks;
   };
@@ -370,7 +370,7 @@ class Scene {
   Pool<Node> nodes_;
   std::vector<NodeLinks> links_;
   Pool<Mesh> meshes_;
-  /** Of the meshes that set_vertices() has changed since another change of their shape. */
+  /** The blocks of meshes that set_vertices() has changed since another change of their shape. */
   std::unordered_map<Handle<Mesh>, VertexBlocks> vertex_blocks_;
   Pool<Image> images_;
   Pool<Texture> textures_;

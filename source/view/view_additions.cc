@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <utility>
 
 namespace gnomon::view {
@@ -153,23 +152,32 @@ std::span<const Addition> additions()
   return all;
 }
 
-std::string free_name(const Scene &scene, const std::string &name)
+NodeNames::NodeNames(const Scene &scene)
 {
-  std::set<std::string_view> taken;
   for (const auto &[handle, node] : scene.nodes()) {
-    taken.insert(node.name);
+    last_numbers_.try_emplace(node.name, 0);
   }
-  std::string result = name;
-  for (int number = 1; taken.contains(result); number++) {
-    result = fmt::format("{}.{:03}", name, number);
+}
+
+std::string NodeNames::take(const std::string &name)
+{
+  const auto [found, is_free] = last_numbers_.try_emplace(name, 0);
+  if (is_free) {
+    return name;
   }
+  // Unlike the iterator, the reference stays valid when names are added.
+  int &number = found->second;
+  std::string result;
+  do {
+    result = fmt::format("{}.{:03}", name, ++number);
+  } while (!last_numbers_.try_emplace(result, 0).second);
   return result;
 }
 
 Handle<Node> add(Scene &scene, const Addition &addition, const glm::dvec3 &position_ws,
                  const glm::dmat4 &world_from_view)
 {
-  Node node{.name = free_name(scene, addition.label)};
+  Node node{.name = NodeNames(scene).take(addition.label)};
   if (addition.is_placed_as_view) {
     node.parent_from_node = world_from_view;
   }
@@ -185,7 +193,7 @@ Handle<Node> add(Scene &scene, const Addition &addition, const glm::dvec3 &posit
   return scene.add(std::move(node));
 }
 
-Handle<Node> duplicate(Scene &scene, Handle<Node> root)
+Handle<Node> duplicate(Scene &scene, Handle<Node> root, NodeNames &names)
 {
   const auto copy = [&](Handle<Node> original, Handle<Node> parent) {
     Node node = scene.nodes()[original];
@@ -193,7 +201,7 @@ Handle<Node> duplicate(Scene &scene, Handle<Node> root)
     const std::size_t dot = node.name.rfind('.');
     const bool is_numbered = dot != std::string::npos && node.name.size() == dot + 4 &&
                              node.name.find_first_not_of("0123456789", dot + 1) == std::string::npos;
-    node.name = free_name(scene, is_numbered ? node.name.substr(0, dot) : node.name);
+    node.name = names.take(is_numbered ? node.name.substr(0, dot) : node.name);
     if (const Lamp *lamp = scene.lamps().find(node.lamp)) {
       Lamp own(*lamp);
       own.name = node.name;

@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <unordered_map>
 
 namespace gnomon::view {
 
@@ -24,16 +25,25 @@ struct Addition {
 /** All additions in the order of the menu: objects, lamps, camera. */
 [[nodiscard]] std::span<const Addition> additions();
 
-/** \a name, or "NAME.001" and so on if a node already has that name. */
-[[nodiscard]] std::string free_name(const scene::Scene &scene, const std::string &name);
+/** The names of a scene's nodes, to name new ones. */
+class NodeNames {
+ public:
+  explicit NodeNames(const scene::Scene &scene);
+  /** \a name, or "NAME.001" and so on if a node already has that name. The next call does not return it again. */
+  [[nodiscard]] std::string take(const std::string &name);
+
+ private:
+  /** By name: the last number that take() appended to it; 0: none yet. */
+  std::unordered_map<std::string, int> last_numbers_;
+};
 
 /** Add a root node with \a addition's content. \a world_from_view: the camera's frame. */
 scene::Handle<scene::Node> add(scene::Scene &scene, const Addition &addition, const glm::dvec3 &position_ws,
                                const glm::dmat4 &world_from_view);
 /**
  * Add a copy of \a root and its descendants to the same parent. Lamps and cameras are copied; meshes and materials are
- * shared.
+ * shared. \a names: those of \a scene; the names of the copies are added.
  */
-scene::Handle<scene::Node> duplicate(scene::Scene &scene, scene::Handle<scene::Node> root);
+scene::Handle<scene::Node> duplicate(scene::Scene &scene, scene::Handle<scene::Node> root, NodeNames &names);
 
 }  // namespace gnomon::view

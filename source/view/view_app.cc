@@ -134,7 +134,7 @@ bool App::set_world_picture(const std::filesystem::path &path)
     message("No scene is open", false);
     return false;
   }
-  // Reverting a running transform would also undo the change of the picture.
+  // The transform is a step of its own.
   end_transform(true);
   document_->history().end_gesture();
   try {
@@ -227,6 +227,7 @@ void App::show_document(scene::Scene scene)
   time_line_.open(document_->scene());
   for (const std::unique_ptr<WindowViewport> &viewport : viewports_) {
     viewport->show_all();
+    viewport->unclip();
     viewport->look_at(*document_);
   }
   const std::string &path = document_->scene().path;
@@ -325,18 +326,32 @@ void App::update_shaders()
   }
 }
 
+void App::step_history(bool (Document::*step)(), const char *nothing)
+{
+  if (!document_) {
+    return;
+  }
+  if (!((*document_).*step)()) {
+    message(nothing, false);
+    return;
+  }
+  // The step may restore matrices of another time.
+  try {
+    time_line_.pose_again(*document_);
+  }
+  catch (const scene::InvalidEdit &fault) {
+    message(fault.what(), true);
+  }
+}
+
 void App::undo()
 {
-  if (document_ && !document_->undo()) {
-    message("There is nothing to undo", false);
-  }
+  step_history(&Document::undo, "There is nothing to undo");
 }
 
 void App::redo()
 {
-  if (document_ && !document_->redo()) {
-    message("There is nothing to redo", false);
-  }
+  step_history(&Document::redo, "There is nothing to redo");
 }
 
 void App::frame(bool is_all)

@@ -243,6 +243,8 @@ class App {
   /** Bring the document up to date before each frame, outside of the user interface. */
   void update_document();
   void step_fly();
+  /** Undo or redo. \a nothing: the message if there is no such step */
+  void step_history(bool (Document::*step)(), const char *nothing);
   void update_shaders();
   void ask(std::string title, std::string path, std::function<void(const std::string &)> answer);
   [[nodiscard]] std::string default_path(const char *suffix) const;

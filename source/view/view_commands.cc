@@ -184,10 +184,10 @@ void clip(App &app, Words words)
 {
   require_usage("clip", words.empty() || words.size() == 4);
   WindowViewport &viewport = drawn_viewport(app);
-  if (words.empty() == viewport.is_clipped()) {
-    viewport.toggle_clip();
+  if (words.empty()) {
+    viewport.unclip();
   }
-  if (!words.empty()) {
+  else {
     viewport.clip(document(app), pixel(words[0], words[1]), pixel(words[2], words[3]));
   }
 }

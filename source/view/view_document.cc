@@ -70,6 +70,8 @@ scene::Scene Document::completed(scene::Scene scene)
 
 void Document::save(const std::filesystem::path &path)
 {
+  // Otherwise the end of the transform would be an unsaved edit.
+  end_transform(true);
   gltf::export_gltf(scene_, path);
   scene_.path = path.string();
   saved_revision_ = scene_.revision();

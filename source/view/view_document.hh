@@ -37,7 +37,7 @@ class Document {
 
   /** An imported scene, completed: without lamps and world, it gets studio lighting. */
   [[nodiscard]] static scene::Scene completed(scene::Scene scene);
-  /** \throws gltf::ExportError */
+  /** Ends a transform. \throws gltf::ExportError */
   void save(const std::filesystem::path &path);
 
   [[nodiscard]] const scene::Scene &scene() const
@@ -59,7 +59,7 @@ class Document {
    * alone. \throws scene::InvalidEdit and changes nothing
    */
   void set_world_picture(std::shared_ptr<const scene::WorldPicture> picture);
-  /** The nodes that undo or redo restores become selected. */
+  /** The nodes that undo or redo restores become selected. Both end a transform first. */
   bool undo();
   bool redo();
   [[nodiscard]] History &history()
@@ -77,17 +77,21 @@ class Document {
   void toggle_visibility();
   /** Add a node and select it. \see view::add */
   void add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view);
-  /** Remove the selected nodes and their descendants, as one undo step. \return false if no node is selected */
+  /**
+   * Remove the selected nodes and their descendants, as one undo step. Ends a transform. \return false if no node is
+   * selected
+   */
   bool remove_selected();
   /**
-   * Duplicate the selected nodes with their descendants, as one undo step, and select the copies. \return false if no
-   * node is selected
+   * Duplicate the selected nodes with their descendants, as one undo step, and select the copies. Ends a transform.
+   * \return false if no node is selected
    */
   bool duplicate_selected();
 
   /**
    * Start to transform `selected` with the pointer in a picture, and the other selected nodes with it, around its
-   * position. \throws as TransformOperation
+   * position. Nodes below a selected one follow that one, also `selected`. A node stays where it is if the matrix of
+   * its parent has no inverse. Ends a running transform. \throws as TransformOperation
    */
   void begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer);
   /** The running transform; nullptr: none. Call update_transform after changing it. */
@@ -192,7 +196,7 @@ class Document {
   [[nodiscard]] scene::Handle<scene::Node> find(const std::string &name) const;
 
  private:
-  /** A node that the operation moves. */
+  /** A node that the operation moves. Its descendants follow it. */
   struct Moved {
     scene::Handle<scene::Node> node;
     /** At the start. */
@@ -212,7 +216,7 @@ class Document {
   std::vector<std::string> engine_names_;
   std::map<std::string, std::unique_ptr<draw::Engine>> engines_;
   std::optional<TransformOperation> operation_;
-  /** The operation's node, and those that follow it. */
+  /** The selected_roots() at the start of the operation. */
   std::vector<Moved> moved_;
   WindowSettings settings_;
   std::uint64_t settings_revision_ = 0;

@@ -5,19 +5,10 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
 namespace gnomon::view {
-
-static bool is_below(const scene::Scene &scene, scene::Handle<scene::Node> node, scene::Handle<scene::Node> ancestor)
-{
-  while (node && node != ancestor) {
-    node = scene.parent(node);
-  }
-  return bool(node);
-}
 
 std::vector<scene::Handle<scene::Node>> Document::selected_roots() const
 {
@@ -70,6 +61,7 @@ void Document::follow_history()
 
 bool Document::undo()
 {
+  end_transform(true);
   const bool is_undone = history_.undo(scene_);
   follow_history();
   return is_undone;
@@ -77,6 +69,7 @@ bool Document::undo()
 
 bool Document::redo()
 {
+  end_transform(true);
   const bool is_redone = history_.redo(scene_);
   follow_history();
   return is_redone;
@@ -85,9 +78,18 @@ bool Document::redo()
 void Document::pose(const scene::Animation &animation, double seconds)
 {
   end_transform(true);
-  const bool was_saved = is_saved();
-  scene::pose(scene_, animation, seconds);
-  saved_revision_ = was_saved ? scene_.revision() : saved_revision_;
+  const auto keep_saved = [this, was_saved = is_saved()] {
+    saved_revision_ = was_saved ? scene_.revision() : saved_revision_;
+  };
+  try {
+    scene::pose(scene_, animation, seconds);
+  }
+  catch (...) {
+    // A part of the scene may be posed.
+    keep_saved();
+    throw;
+  }
+  keep_saved();
 }
 
 void Document::toggle_visibility()
@@ -112,6 +114,7 @@ void Document::add(const Addition &addition, const glm::dvec3 &position_ws, cons
 
 bool Document::remove_selected()
 {
+  end_transform(true);
   const std::vector<scene::Handle<scene::Node>> nodes = selection();
   history_.join([&] {
     for (const scene::Handle<scene::Node> node : nodes) {
@@ -128,10 +131,12 @@ bool Document::remove_selected()
 
 bool Document::duplicate_selected()
 {
+  end_transform(true);
   std::vector<scene::Handle<scene::Node>> copies;
+  NodeNames names(scene_);
   history_.join([&] {
     for (const scene::Handle<scene::Node> node : selected_roots()) {
-      copies.push_back(duplicate(scene_, node));
+      copies.push_back(duplicate(scene_, node, names));
       history_.note_added(scene_, copies.back());
     }
   });
@@ -143,42 +148,40 @@ bool Document::duplicate_selected()
 
 void Document::begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer)
 {
+  // Otherwise the edits of a running operation would be no undo step.
+  end_transform(true);
   operation_.emplace(scene_, selected, transform, map, pointer);
   history_.end_gesture();
   moved_.clear();
-  const auto add = [&](scene::Handle<scene::Node> node) {
-    moved_.push_back({node, scene_.nodes()[node].parent_from_node, scene_.world_from_node(node)});
-  };
-  add(selected);
   for (const scene::Handle<scene::Node> node : selected_roots()) {
-    // An ancestor would move the operation's node a second time.
-    if (node != selected && !is_below(scene_, selected, node)) {
-      add(node);
-    }
+    moved_.push_back({node, scene_.nodes()[node].parent_from_node, scene_.world_from_node(node)});
   }
 }
 
 void Document::update_transform()
 {
-  if (operation_ && !scene_.nodes().is_live(operation_->node())) {
-    operation_.reset();
-  }
   if (!operation_) {
     return;
   }
-  scene_.set_transform(operation_->node(), operation_->parent_from_node());
-  const glm::dmat4 &start_ws = operation_->start_ws();
-  if (std::abs(glm::determinant(start_ws)) > 0.0) {
-    const glm::dmat4 change = scene_.world_from_node(operation_->node()) * glm::inverse(start_ws);
-    for (const Moved &moved : std::span(moved_).subspan(1)) {
-      if (scene_.nodes().is_live(moved.node)) {
-        // In the space of the parent, which the operation does not move.
-        const scene::Handle<scene::Node> parent = scene_.parent(moved.node);
-        const glm::dmat4 world_from_parent = parent ? scene_.world_from_node(parent) : glm::dmat4(1.0);
-        if (std::abs(glm::determinant(world_from_parent)) > 0.0) {
-          scene_.set_transform(moved.node, glm::inverse(world_from_parent) * change * moved.world_from_node);
-        }
-      }
+  if (!scene_.nodes().is_live(operation_->node())) {
+    end_transform(true);
+    return;
+  }
+  const glm::dmat4 change_ws = operation_->change_ws();
+  for (const Moved &moved : moved_) {
+    if (moved.node == operation_->node()) {
+      // Without the rounding of change_ws, and also if the node's matrix has no inverse.
+      scene_.set_transform(moved.node, operation_->parent_from_node());
+      continue;
+    }
+    if (!scene_.nodes().is_live(moved.node)) {
+      continue;
+    }
+    // The operation does not move the parents of roots.
+    const scene::Handle<scene::Node> parent = scene_.parent(moved.node);
+    const glm::dmat4 world_from_parent = parent ? scene_.world_from_node(parent) : glm::dmat4(1.0);
+    if (has_inverse(world_from_parent)) {
+      scene_.set_transform(moved.node, affine(glm::inverse(world_from_parent) * change_ws * moved.world_from_node));
     }
   }
   deform();

@@ -109,14 +109,6 @@ void History::apply(scene::Scene &scene, const Change &change, bool is_undone)
       change);
 }
 
-void History::revert_gesture(scene::Scene &scene)
-{
-  if (is_in_gesture_ && undo(scene)) {
-    steps_.erase(steps_.begin() + std::ptrdiff_t(done_count_), steps_.end());
-  }
-  is_in_gesture_ = false;
-}
-
 bool History::undo(scene::Scene &scene)
 {
   restored_.clear();

@@ -57,8 +57,6 @@ class History {
   {
     is_in_gesture_ = false;
   }
-  /** Undo the edits since the last end_gesture and drop them from the history. */
-  void revert_gesture(scene::Scene &scene);
 
   /** \return whether there was a step to undo, or to redo */
   bool undo(scene::Scene &scene);

@@ -29,11 +29,20 @@ void TimeLine::set_time(Document &document, double seconds)
   const scene::Animation &animation = animations_[chosen_];
   seconds_ = std::clamp(seconds, 0.0, animation.duration());
   document.pose(animation, seconds_);
+  is_posed_ = true;
+}
+
+void TimeLine::pose_again(Document &document)
+{
+  if (is_posed_) {
+    set_time(document, seconds_);
+  }
 }
 
 void TimeLine::step(Document &document, double seconds)
 {
-  if (!is_playing_) {
+  // A pose would end the transform.
+  if (!is_playing_ || document.operation()) {
     return;
   }
   const double duration = animations_[chosen_].duration();
@@ -52,6 +61,7 @@ void TimeLine::show(Document &document)
     play(!is_playing_);
   }
   if (animations_.size() > 1) {
+    const std::size_t chosen_before = chosen_;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(140.0F);
     if (ImGui::BeginCombo("##animation", animations_[chosen_].name.c_str())) {
@@ -60,11 +70,14 @@ void TimeLine::show(Document &document)
         ImGui::PushID(int(i));
         if (ImGui::Selectable(animations_[i].name.c_str(), i == chosen_)) {
           chosen_ = i;
-          set_time(document, seconds_);
         }
         ImGui::PopID();
       }
       ImGui::EndCombo();
+    }
+    // It may throw, therefore after the end of the list.
+    if (chosen_ != chosen_before) {
+      set_time(document, seconds_);
     }
   }
   ImGui::SameLine();

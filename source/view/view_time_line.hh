@@ -7,7 +7,10 @@
 
 namespace gnomon::view {
 
-/** Plays an animation of the document's scene. Its poses are no edits, for undo as for the mark of unsaved ones. */
+/**
+ * Plays an animation of the document's scene. Its poses are not edits: undo leaves them out, and a saved scene stays
+ * saved.
+ */
 class TimeLine {
  public:
   /** Offer the animations of \a scene: all at once, if there are several that can be joined, and each. */
@@ -21,19 +24,24 @@ class TimeLine {
   {
     return is_playing_;
   }
-  /** Play, from the begin again after the end, or stop. No effect without an animation. */
+  /** Play or stop. After its end, the animation starts again. No effect without an animation. */
   void play(bool is_playing)
   {
     is_playing_ = is_playing && !is_empty();
   }
-  /** Of the last pose, seconds. */
+  /** The time of the last pose, seconds. */
   [[nodiscard]] double seconds() const
   {
     return seconds_;
   }
   /** Pose the scene. \a seconds: within the duration of the animation. \throws scene::InvalidEdit */
   void set_time(Document &document, double seconds);
-  /** Pose the scene \a seconds later, if it plays. A pose that fails ends that. \throws scene::InvalidEdit */
+  /** Pose the scene as set_time did last. No effect before the first pose. \throws scene::InvalidEdit */
+  void pose_again(Document &document);
+  /**
+   * Pose the scene \a seconds later, if it plays. Time waits while a transform is running. A pose that fails stops the
+   * animation. \throws scene::InvalidEdit
+   */
   void step(Document &document, double seconds);
   /** Show it as a line of the current ImGui window. \throws scene::InvalidEdit */
   void show(Document &document);
@@ -42,6 +50,8 @@ class TimeLine {
   std::vector<scene::Animation> animations_;
   std::size_t chosen_ = 0;
   double seconds_ = 0.0;
+  /** Whether set_time has posed the scene. */
+  bool is_posed_ = false;
   bool is_playing_ = false;
 };
 

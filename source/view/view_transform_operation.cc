@@ -53,6 +53,22 @@ double wrapped(double angle)
 
 }  // namespace
 
+glm::dmat4 affine(glm::dmat4 matrix)
+{
+  for (int column = 0; column < 4; column++) {
+    matrix[column][3] = column == 3 ? 1.0 : 0.0;
+  }
+  return matrix;
+}
+
+bool has_inverse(const glm::dmat4 &matrix)
+{
+  const glm::dmat3 axes(matrix);
+  const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
+  // The determinant of a singular matrix may be slightly above 0 because of rounding.
+  return std::abs(glm::determinant(axes)) > 1e-12 * edges;
+}
+
 glm::dvec3 axis_ws(const glm::dmat4 &world_from_node, TransformAxis axis, Orientation orientation)
 {
   const int index = index_of(axis);
@@ -103,10 +119,7 @@ TransformOperation::TransformOperation(const scene::Scene &scene, scene::Handle<
 {
   if (const scene::Handle<scene::Node> parent = scene.parent(node)) {
     const glm::dmat4 &world_from_parent = scene.world_from_node(parent);
-    const glm::dmat3 axes(world_from_parent);
-    const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
-    // The determinant of a singular matrix may be slightly above 0 because of rounding.
-    if (!(std::abs(glm::determinant(axes)) > 1e-12 * edges)) {
+    if (!has_inverse(world_from_parent)) {
       throw std::runtime_error(fmt::format("node '{}': cannot be moved, as the matrix of its parent has no inverse",
                                            scene.nodes()[node].name));
     }
@@ -238,12 +251,24 @@ glm::dmat4 TransformOperation::parent_from_node() const
     case TransformKind::Rotate: world = rotated(start_ws_, rotation_axis_ws(), angle()); break;
     case TransformKind::Scale: world = scaled(start_ws_, transform_, factor()); break;
   }
-  glm::dmat4 result = parent_from_world_ * world;
-  // Remove rounding errors from the last row: the matrix is affine.
-  for (int column = 0; column < 4; column++) {
-    result[column][3] = column == 3 ? 1.0 : 0.0;
+  return affine(parent_from_world_ * world);
+}
+
+glm::dmat4 TransformOperation::change_ws() const
+{
+  const glm::dmat4 from_position = glm::translate(glm::dmat4(1.0), position_ws());
+  const glm::dmat4 to_position = glm::translate(glm::dmat4(1.0), -position_ws());
+  switch (transform_.kind) {
+    case TransformKind::Move: return glm::translate(glm::dmat4(1.0), way_ws());
+    case TransformKind::Rotate:
+      return from_position * glm::rotate(glm::dmat4(1.0), angle(), rotation_axis_ws()) * to_position;
+    case TransformKind::Scale: break;
   }
-  return result;
+  const glm::dmat4 scale = scaled(glm::dmat4(1.0), transform_, factor());
+  if (transform_.axis == TransformAxis::All || transform_.orientation == Orientation::World) {
+    return from_position * scale * to_position;
+  }
+  return has_inverse(start_ws_) ? affine(start_ws_ * scale * glm::inverse(start_ws_)) : glm::dmat4(1.0);
 }
 
 std::string TransformOperation::text() const

@@ -21,6 +21,14 @@ enum class TransformAxis { All, X, Y, Z };
 /** The axes of a transform: those of the world, or of the node. */
 enum class Orientation { World, Local };
 
+/**
+ * \a matrix with the last row 0 0 0 1 exactly, as scene::Scene requires it. Rounding in the inverse of an affine matrix
+ * may change that row.
+ */
+[[nodiscard]] glm::dmat4 affine(glm::dmat4 matrix);
+/** Whether an affine matrix has an inverse, apart from rounding: its axes are not of length 0, nor in one plane. */
+[[nodiscard]] bool has_inverse(const glm::dmat4 &matrix);
+
 struct Transform {
   TransformKind kind = TransformKind::Move;
   TransformAxis axis = TransformAxis::All;
@@ -46,8 +54,8 @@ inline constexpr double along_sight = 0.97;
 [[nodiscard]] glm::dmat4 scaled(const glm::dmat4 &world_from_node, const Transform &transform, double factor);
 
 /**
- * A running transform of a node by the pointer or a typed number. It does not edit the scene; parent_from_node is the
- * current result.
+ * A running transform of a node by the pointer or a typed number. It does not edit the scene; parent_from_node and
+ * change_ws are the current result.
  */
 class TransformOperation {
  public:
@@ -86,6 +94,11 @@ class TransformOperation {
 
   /** The transform of the node after the operation. */
   [[nodiscard]] glm::dmat4 parent_from_node() const;
+  /**
+   * The same change for other nodes, in world space: the product of it and a node's matrix at the start is the matrix
+   * after the operation. The identity if the node is scaled along its own axes and its matrix has no inverse.
+   */
+  [[nodiscard]] glm::dmat4 change_ws() const;
   /** Text for the user, such as "Move along X: 1.5 m". */
   [[nodiscard]] std::string text() const;
 

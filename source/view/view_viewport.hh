@@ -70,6 +70,8 @@ class WindowViewport {
    * sides cut the rest off. \pre draw was called
    */
   void clip(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px);
+  /** Undo clip; the next drag of the left button does not mark a rectangle for it either. */
+  void unclip();
   /** Undo clip; if nothing is cut off, the next drag of the left button marks the rectangle for it. */
   void toggle_clip();
   [[nodiscard]] bool is_clipped() const

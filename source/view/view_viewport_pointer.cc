@@ -104,17 +104,24 @@ void WindowViewport::clip(Document &document, const glm::dvec2 &from_px, const g
   const glm::ivec2 end = glm::clamp(glm::ivec2(glm::ceil(glm::max(from_px, to_px))), first + 1, size_px_);
   const gpu::Rectangle region{{first.x, size_px_.y - end.y}, end - first};
   const draw::View part = overlay::view_of_region(drawn_view_, size_px_, region);
-  clip_planes_ws_.clear();
+  unclip();
   for (const glm::vec4 &plane : std::span(part.frustum_planes_ws()).first(4)) {
     const glm::dvec3 normal(plane);
     clip_planes_ws_.emplace_back(normal, double(plane.w) - glm::dot(normal, document.render_scene().origin_ws()));
   }
 }
 
+void WindowViewport::unclip()
+{
+  clip_planes_ws_.clear();
+  is_clip_asked_ = false;
+}
+
 void WindowViewport::toggle_clip()
 {
-  is_clip_asked_ = !is_clipped() && !is_clip_asked_;
-  clip_planes_ws_.clear();
+  const bool is_asked = !is_clipped() && !is_clip_asked_;
+  unclip();
+  is_clip_asked_ = is_asked;
 }
 
 void WindowViewport::isolate(const Document &document)
@@ -203,7 +210,7 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
   area_->points_px.back() = pointer_px_;
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     const Area area = *std::exchange(area_, std::nullopt);
-    if (std::exchange(is_clip_asked_, false)) {
+    if (is_clip_asked_) {
       clip(document, area.points_px.front(), area.points_px.back());
     }
     else {

@@ -31,7 +31,7 @@ class CliVulkanTest : public test::ProgramTest {
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     return path;
   }
-  /** Of the pictures in two files. */
+  /** Root of the mean square difference between the pictures in two files. */
   double rms_difference(const std::string &first, const std::string &second)
   {
     OIIO::ImageBuf a((folder / first).string());

@@ -99,7 +99,7 @@ GltfBuilder layered_triangle()
 
 TEST(GltfPointer, AllFactorsOfMaterialsArePlayed)
 {
-  // Of an index of 2: (1 / 3)² / 0.04.
+  // An index of refraction of 2 gives (1 / 3)² / 0.04.
   constexpr float ratio = 25.0F / 9.0F;
   int played = 0;
   scene::Material::for_each_property([&](const auto &row) {

@@ -20,6 +20,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 
 namespace gnomon::view {
@@ -411,24 +412,6 @@ TEST(ViewHistoryTest, JoinedChangesAreOneStepOfAnyLength)
   EXPECT_FALSE(history.undo(scene));
 }
 
-TEST(ViewHistoryTest, AGestureThatIsRevertedIsForgottenAndThoseBeforeItAreKept)
-{
-  scene::Scene scene;
-  History history;
-  const auto node = scene.add(Node{.name = "0"});
-  const auto rename = [&](const char *name) { history.edit(scene, node, [&](Node &edited) { edited.name = name; }); };
-  rename("1");
-  history.end_gesture();
-  history.revert_gesture(scene);
-  EXPECT_EQ(scene.nodes()[node].name, "1") << "there was nothing to revert";
-  rename("2");
-  rename("3");
-  history.revert_gesture(scene);
-  EXPECT_EQ(scene.nodes()[node].name, "1");
-  EXPECT_EQ(history.undo_count(), 1U);
-  EXPECT_EQ(history.redo_count(), 0U);
-}
-
 TEST(ViewAdditionsTest, WhatIsAddedIsReadBackAsItWasAndSurfacesFaceOutwards)
 {
   scene::Scene scene;
@@ -439,7 +422,8 @@ TEST(ViewAdditionsTest, WhatIsAddedIsReadBackAsItWasAndSurfacesFaceOutwards)
       add(scene, addition, {0.1, -2.5, 3.7}, rigid);
     }
   }
-  const auto copied = duplicate(scene, (*scene.nodes().begin()).handle);
+  NodeNames taken(scene);
+  const auto copied = duplicate(scene, (*scene.nodes().begin()).handle, taken);
   EXPECT_EQ(scene.nodes()[copied].name, "Plane.002");
   for (const auto &[handle, mesh] : scene.meshes()) {
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -497,7 +481,8 @@ TEST(ViewAdditionsTest, ADuplicateHasItsDescendantsAndLampsOfItsOwn)
   const auto root = scene.add(Node{.name = "Root"});
   const auto lamp = scene.add(scene::Lamp{.name = "Lamp"});
   scene.add(Node{.name = "Lamp", .lamp = lamp}, root);
-  const auto copy = duplicate(scene, root);
+  NodeNames names(scene);
+  const auto copy = duplicate(scene, root, names);
   EXPECT_EQ(scene.nodes()[copy].name, "Root.001");
   const Node &child = scene.nodes()[scene.first_child(copy)];
   EXPECT_EQ(child.name, "Lamp.001");
@@ -680,7 +665,7 @@ class ViewDocumentTransformTest : public testing::Test {
   ViewDocumentTransformTest()
   {
     scene::Scene made;
-    const auto parent = made.add(Node{.name = "parent", .parent_from_node = placed_at({1, 2, 3})});
+    parent = made.add(Node{.name = "parent", .parent_from_node = placed_at({1, 2, 3})});
     a = made.add(Node{.name = "a", .parent_from_node = placed_at(middle)});
     b = made.add(Node{.name = "b", .parent_from_node = placed_at({0.5, 0, 1})}, parent);
     child = made.add(Node{.name = "child", .parent_from_node = placed_at({0, 0.5, 0})}, b);
@@ -691,53 +676,150 @@ class ViewDocumentTransformTest : public testing::Test {
     return {document->scene().world_from_node(a), document->scene().world_from_node(b),
             document->scene().world_from_node(child)};
   }
-  void transform(TransformKind kind, std::string_view typed, bool is_kept)
+  void set_matrix(Handle<Node> node, const glm::dmat4 &matrix)
   {
-    document->begin_transform({kind, TransformAxis::Y}, map_from(eye), {200, 150});
+    document->edit(node, [&](Node &edited) { edited.parent_from_node = matrix; });
+    document->history().end_gesture();
+  }
+  void begin(TransformKind kind, std::string_view typed, Orientation orientation = Orientation::World)
+  {
+    document->begin_transform({kind, TransformAxis::Y, orientation}, map_from(eye), {200, 150});
     for (const char character : typed) {
       document->operation()->type(character);
       document->update_transform();
     }
+  }
+  void transform(TransformKind kind, std::string_view typed, bool is_kept)
+  {
+    begin(kind, typed);
     document->end_transform(is_kept);
   }
 
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
-  Handle<Node> a, b, child;
+  Handle<Node> parent, a, b, child;
   std::optional<Document> document;
 };
 
 TEST_F(ViewDocumentTransformTest, AllSelectedNodesMoveTurnAndScaleAroundTheOneOfTheGizmoAsOneStep)
 {
-  document->select(std::vector{a, b, child});
   const auto before = worlds();
-  const glm::dvec3 pivot(before[0][3]);
-  const auto around = [&](const glm::dmat4 &change) {
-    return glm::translate(glm::dmat4(1), pivot) * change * glm::translate(glm::dmat4(1), -pivot);
-  };
+  // A child follows its selected parent, also the child that has the gizmo.
+  for (const auto &[nodes, gizmo] : {std::pair(std::vector{a, b, child}, 0), {std::vector{child, b, a}, 2}}) {
+    document->select(nodes);
+    const glm::dvec3 pivot(before[std::size_t(gizmo)][3]);
+    const auto around = [&](const glm::dmat4 &change) {
+      return glm::translate(glm::dmat4(1), pivot) * change * glm::translate(glm::dmat4(1), -pivot);
+    };
+    for (const auto &[kind, typed, change] :
+         {std::tuple(TransformKind::Move, "1.5", glm::translate(glm::dmat4(1), {0, 1.5, 0})),
+          {TransformKind::Rotate, "90", around(glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0)))},
+          {TransformKind::Scale, "3", around(glm::scale(glm::dmat4(1), {1, 3, 1}))}}) {
+      transform(kind, typed, true);
+      const auto after = worlds();
+      for (std::size_t i = 0; i < 3; i++) {
+        EXPECT_LT(difference(after[i], change * before[i]), 1e-8) << typed << ' ' << i << ", gizmo at " << gizmo;
+      }
+      EXPECT_EQ(document->history().undo_count(), 1U);
+      EXPECT_TRUE(document->undo());
+      EXPECT_EQ(worlds(), before);
+      EXPECT_TRUE(document->redo());
+      EXPECT_EQ(worlds(), after);
+      EXPECT_TRUE(document->undo());
+      transform(kind, typed, false);
+      EXPECT_EQ(worlds(), before) << "not kept";
+      EXPECT_EQ(document->history().undo_count(), 0U);
+    }
+  }
+}
+
+TEST_F(ViewDocumentTransformTest, TheRoundingOfInversesMakesNoMatrixInvalid)
+{
+  set_matrix(a, glm::scale(glm::translate(glm::dmat4(1), middle), {7, 7, 1}));
+  set_matrix(parent, glm::scale(glm::rotate(glm::dmat4(1), 0.6, glm::normalize(glm::dvec3(1, 2, 3))), {7, 7, 1}));
+  const auto before = worlds();
+  // 49 * (1 / 49) is not 1 in floating point.
+  const glm::dmat4 inverse = glm::inverse(before[0]);
+  ASSERT_NE(inverse[3][3], 1.0);
+  document->select(std::vector{a, b});
+  for (const TransformKind kind : {TransformKind::Move, TransformKind::Rotate, TransformKind::Scale}) {
+    for (const Orientation orientation : {Orientation::World, Orientation::Local}) {
+      ASSERT_NO_THROW(begin(kind, "2", orientation));
+      const auto after = worlds();
+      EXPECT_GT(difference(after[0], before[0]), 0.01);
+      EXPECT_LT(difference(after[1], after[0] * inverse * before[1]), 1e-8) << int(kind) << ' ' << int(orientation);
+      document->end_transform(false);
+    }
+  }
+}
+
+TEST_F(ViewDocumentTransformTest, ANodeWithoutAnInverseMovesOthersAndThoseBelowItStay)
+{
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.7, glm::normalize(glm::dvec3(1, 2, 3)));
+  // Rounding leaves this one a determinant of about 1e-17.
+  const glm::dmat4 flat = turn * glm::scale(glm::dmat4(1), {1, 0, 1}) * turn;
+  set_matrix(a, flat);
+  const auto before = worlds();
+  document->select(std::vector{a, b});
   for (const auto &[kind, typed, change] :
        {std::tuple(TransformKind::Move, "1.5", glm::translate(glm::dmat4(1), {0, 1.5, 0})),
-        {TransformKind::Rotate, "90", around(glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0)))},
-        {TransformKind::Scale, "3", around(glm::scale(glm::dmat4(1), {1, 3, 1}))}}) {
-    transform(kind, typed, true);
-    const auto after = worlds();
+        {TransformKind::Rotate, "90", glm::rotate(glm::dmat4(1), glm::radians(90.0), glm::dvec3(0, 1, 0))},
+        {TransformKind::Scale, "3", glm::scale(glm::dmat4(1), {1, 3, 1})}}) {
+    begin(kind, typed);
     for (std::size_t i = 0; i < 3; i++) {
-      EXPECT_LT(difference(after[i], change * before[i]), 1e-8) << typed << ' ' << i;
+      EXPECT_LT(difference(worlds()[i], change * before[i]), 1e-8) << typed << ' ' << i;
     }
-    EXPECT_EQ(document->history().undo_count(), 1U);
-    EXPECT_TRUE(document->undo());
-    EXPECT_EQ(worlds(), before);
-    EXPECT_TRUE(document->redo());
-    EXPECT_EQ(worlds(), after);
-    EXPECT_TRUE(document->undo());
-    transform(kind, typed, false);
-    EXPECT_EQ(worlds(), before) << "not kept";
-    EXPECT_EQ(document->history().undo_count(), 0U);
+    document->end_transform(false);
   }
-  // Below a selected node, the gizmo's alone moves.
-  document->select(std::vector{child, b});
-  transform(TransformKind::Move, "2", true);
-  EXPECT_EQ(worlds()[1], before[1]);
-  EXPECT_LT(difference(worlds()[2], glm::translate(glm::dmat4(1), {0, 2, 0}) * before[2]), 1e-8);
+  // Its own axes define no change for other nodes.
+  begin(TransformKind::Scale, "3", Orientation::Local);
+  EXPECT_GT(difference(worlds()[0], before[0]), 0.01);
+  EXPECT_LT(difference(worlds()[1], before[1]), 1e-8);
+  document->end_transform(false);
+
+  set_matrix(parent, flat);
+  const glm::dmat4 below = worlds()[1];
+  begin(TransformKind::Move, "1.5");
+  EXPECT_LT(difference(worlds()[0], glm::translate(glm::dmat4(1), {0, 1.5, 0}) * before[0]), 1e-8);
+  EXPECT_EQ(worlds()[1], below);
+}
+
+TEST_F(ViewDocumentTransformTest, EachTransformIsAStepOfItsOwnWhateverEndsIt)
+{
+  const auto before = worlds();
+  const auto is_at = [&](double height) {
+    return difference(worlds()[0], glm::translate(glm::dmat4(1), {0, height, 0}) * before[0]) < 1e-8;
+  };
+  document->select(a);
+  begin(TransformKind::Move, "1");
+  begin(TransformKind::Move, "1");
+  document->end_transform(true);
+  EXPECT_EQ(document->history().undo_count(), 2U);
+  EXPECT_TRUE(is_at(2.0));
+  EXPECT_TRUE(document->undo());
+  EXPECT_TRUE(is_at(1.0));
+
+  begin(TransformKind::Move, "1");
+  EXPECT_TRUE(document->undo());
+  EXPECT_FALSE(document->operation());
+  EXPECT_TRUE(is_at(1.0)) << "the running one is undone";
+  begin(TransformKind::Move, "1");
+  EXPECT_FALSE(document->redo()) << "a new step ends redo";
+  EXPECT_TRUE(is_at(2.0));
+  begin(TransformKind::Move, "1");
+  EXPECT_TRUE(document->duplicate_selected());
+  EXPECT_EQ(document->history().undo_count(), 4U);
+  begin(TransformKind::Move, "1");
+  EXPECT_TRUE(document->remove_selected());
+  EXPECT_EQ(document->history().undo_count(), 6U);
+
+  document->select(a);
+  begin(TransformKind::Move, "1");
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "transformed.glb";
+  document->save(path);
+  std::filesystem::remove(path);
+  document->end_transform(false);
+  EXPECT_TRUE(is_at(4.0));
+  EXPECT_TRUE(document->is_saved());
 }
 
 TEST_F(ViewDocumentTransformTest, AllSelectedNodesAreDuplicatedAsOneStepEachOnce)
@@ -747,6 +829,14 @@ TEST_F(ViewDocumentTransformTest, AllSelectedNodesAreDuplicatedAsOneStepEachOnce
   EXPECT_EQ(document->scene().nodes().size(), 7U) << "a, and b with its child";
   EXPECT_EQ(document->selection().size(), 2U);
   EXPECT_FALSE(document->is_selected(a) || document->is_selected(b));
+  document->select(a, true);
+  EXPECT_TRUE(document->duplicate_selected());
+  std::set<std::string> names;
+  for (const auto &[handle, node] : document->scene().nodes()) {
+    EXPECT_TRUE(names.insert(node.name).second) << node.name;
+  }
+  EXPECT_TRUE(names.contains("a.002") && names.contains("a.003") && names.contains("child.002"));
+  EXPECT_TRUE(document->undo());
   EXPECT_TRUE(document->undo());
   EXPECT_EQ(document->scene().nodes().size(), 4U);
   EXPECT_EQ(document->history().undo_count(), 0U);
@@ -790,8 +880,47 @@ TEST(ViewTimeLineTest, PosesAreNoEditsAndPlayingBeginsAgainAfterTheEnd)
   EXPECT_FALSE(document.is_saved());
   line.step(document, 0.25);
   EXPECT_FALSE(document.is_saved());
+  // Time waits for a transform.
+  document.select(nodes[0]);
+  document.begin_transform({TransformKind::Move, TransformAxis::Y}, map_from(eye), {200, 150});
+  line.step(document, 0.25);
+  EXPECT_TRUE(document.operation());
+  EXPECT_EQ(line.seconds(), 0.25);
+  document.end_transform(false);
+  // The edit remembers the pose of another time.
+  document.history().end_gesture();
+  document.edit(nodes[0], [](Node &node) { node.parent_from_node[3].x = 9.0; });
+  TimeLine unused;
+  unused.open(document.scene());
+  unused.pose_again(document);
+  EXPECT_EQ(x(0), 9.0);
+  line.set_time(document, 1.5);
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(x(0), 0.5);
+  line.pose_again(document);
+  EXPECT_EQ(x(0), 3.0);
   line.open(scene::Scene());
   EXPECT_TRUE(line.is_empty());
+}
+
+TEST(ViewTimeLineTest, APoseThatFailsHalfwayLeavesASavedSceneSaved)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  scene::Animation animation;
+  for (const char *name : {"a", "b"}) {
+    scene::AnimatedNode animated;
+    animated.node = scene.add(Node{.name = name});
+    animated.translation_track =
+        std::make_shared<const scene::Track>(scene::Track{scene::Interpolation::Linear, 3, {0, 2}, {0, 0, 0, 4, 0, 0}});
+    animation.nodes.push_back(animated);
+  }
+  const Handle<Node> first = animation.nodes[0].node;
+  animation.nodes[1].scale = glm::dvec3(std::numeric_limits<double>::infinity());
+  Document document(*device, std::move(scene), default_settings());
+  EXPECT_THROW(document.pose(animation, 1.0), scene::InvalidEdit);
+  EXPECT_EQ(document.scene().nodes()[first].parent_from_node[3].x, 2.0) << "the part before the fault is posed";
+  EXPECT_TRUE(document.is_saved());
 }
 
 TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndone)

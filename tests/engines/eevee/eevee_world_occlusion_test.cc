@@ -107,7 +107,7 @@ TEST_F(WorldOcclusionTest, InAnOpenRoomIsTheFormFactorOfTheOpening)
   EXPECT_NEAR(difference / count, 0.0, 0.01);
 }
 
-/** Of directions at 1024 places of a Sobol sequence, as a picture of 256 samples draws them. */
+/** Light from directions at 1024 places of a Sobol sequence, as a picture of 256 samples draws them. */
 struct Arriving {
   /** Irradiance / (4 π) from all of them. */
   double whole = 0.0;
