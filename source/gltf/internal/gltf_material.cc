@@ -40,7 +40,7 @@ static_assert(by_importance.size() == slot_names.size());
 /** Reads one material; every message names it. */
 class MaterialReader {
  public:
-  /** \a moved: paths of the material that animations move. */
+  /** \a moved: paths of the material that animations move. All references must outlive the reader. */
   MaterialReader(const Model::Material &source, std::size_t index, const std::set<std::string_view> &moved,
                  TextureImporter &textures, StandIns &stand_ins, Warnings &warnings)
       : source_(source),
@@ -349,9 +349,7 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   }
   else if (is_new) {
     const Model::Material &source = file_.model.materials[gltf_material];
-    const auto moved = moved_.find(gltf_material);
-    MaterialReader reader(source, static_cast<std::size_t>(gltf_material),
-                          moved == moved_.end() ? std::set<std::string_view>() : moved->second, textures_, stand_ins_,
+    MaterialReader reader(source, static_cast<std::size_t>(gltf_material), moved_[gltf_material], textures_, stand_ins_,
                           warnings_);
     Material material = reader.read();
     if (!source.surface_uri.empty()) {
