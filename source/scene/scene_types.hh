@@ -215,7 +215,7 @@ struct Mesh {
 struct VertexValues {
   /** Indices in the vectors of the mesh. */
   std::span<const std::uint32_t> vertices{};
-  /** As the vectors of Mesh: one for each of `vertices`, or empty, and the mesh keeps its own. */
+  /** A value for each of `vertices`, as in the vector of Mesh. Empty: the mesh keeps its values. */
   std::span<const glm::vec3> positions{};
   std::span<const glm::vec3> normals{};
   std::span<const glm::vec2> uvs{};

@@ -56,7 +56,7 @@ class SceneWorld {
    * others it chooses the directions of the world. Creates no resources on the device.
    */
   void sync_occlusion(const render_scene::RenderScene &scene, const Settings &settings);
-  /** Those of the last sync_occlusion. None in pictures of one sample. */
+  /** The directions of the last sync_occlusion. Pictures of one sample have none. */
   [[nodiscard]] const WorldDirections &directions() const
   {
     return directions_;

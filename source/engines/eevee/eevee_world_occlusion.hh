@@ -67,9 +67,9 @@ class WorldOcclusion {
   /** Position of the first probe, and the distances between probes along the axes, metres. */
   glm::vec3 first_ws_{0.0F};
   glm::vec3 step_{1.0F};
-  /** What the world sends along a ray. */
+  /** The light of the world from the direction of a ray. */
   struct Ray {
-    /** Of the grid of directions(). */
+    /** Index in the grid of directions(). */
     std::uint16_t cell = 0;
     float luminance = 0.0F;
   };

@@ -85,7 +85,7 @@ class MaterialReader {
   StandIns &stand_ins_;
   Warnings &warnings_;
   Material result_;
-  /** As `result_`, with 0.5 for each factor that moves: a texture that has an effect with it has one at some time. */
+  /** A copy of `result_` with 0.5 for each factor that moves. It decides which textures have an effect at some time. */
   Material moving_;
   std::vector<int> uv_sets_;
 

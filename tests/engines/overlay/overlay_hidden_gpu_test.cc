@@ -297,7 +297,7 @@ TEST_F(ClipPlanesTest, EnginesAndPickingShowTheSamePartsOfSurfaces)
     EXPECT_EQ(made.whole_again, made.whole);
     EXPECT_GT(made.programs_made, 0U);
     Overlay overlay(*shared);
-    // What a pixel shows where no neighbour, which the pixel filter mixes in, shows anything else.
+    // The content of a pixel whose neighbours have the same content, so that the pixel filter mixes in nothing else.
     enum class Shown { Mixed, Nothing, Kept, Revealed, Emptied };
     std::vector<Shown> shown;
     for (int i = 0; i < size_px.x * size_px.y; i++) {
