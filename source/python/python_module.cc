@@ -5,6 +5,7 @@
 #include "eevee_settings.hh"
 #include "gltf_export.hh"
 #include "gltf_import.hh"
+#include "render_display.hh"
 
 #include <array>
 #include <map>
@@ -220,6 +221,41 @@ py::tuple refine(Renderer &renderer, double seconds, const std::optional<Thing<s
   return py::make_tuple(picture_array(std::move(pixels), size_px), is_complete);
 }
 
+constexpr std::array<std::string_view, 3> encoding_words = {"linear", "display", "srgb"};
+
+const Fields<render_scene::Display> display_fields = property_fields<render_scene::Display>();
+
+bool draw(Renderer &renderer, double seconds, std::uint32_t framebuffer, const glm::ivec2 &framebuffer_size,
+          const std::optional<glm::ivec4> &rectangle, const std::optional<Thing<scene::Node>> &camera,
+          const std::string &encoding, bool is_over, const std::optional<glm::dmat4> &clip_from_view,
+          const py::kwargs &display_values)
+{
+  const auto word = std::ranges::find(encoding_words, encoding);
+  if (word == encoding_words.end()) {
+    throw py::value_error(
+        fmt::format("draw: encoding '{}' is none of '{}'", encoding, fmt::join(encoding_words, "', '")));
+  }
+  render_scene::Display display;
+  set_fields(display_fields, "draw", renderer.scene(), display, display_values);
+  const glm::ivec4 place = rectangle.value_or(glm::ivec4(0, 0, framebuffer_size));
+  if (place.z <= 0 || place.w <= 0) {
+    throw py::value_error(fmt::format("draw: a rectangle of {}x{} pixels is empty", place.z, place.w));
+  }
+  draw::Target target{.framebuffer = gpu::HostFramebuffer{.name = framebuffer, .size_px = framebuffer_size},
+                      .origin_px = glm::ivec2(place),
+                      .size_px = {place.z, place.w},
+                      .encoding = draw::Encoding(word - encoding_words.begin()),
+                      .view_transform = display.view_transform,
+                      .exposure = display.exposure,
+                      .composition = is_over ? draw::Composition::Over : draw::Composition::Replace};
+  if (clip_from_view) {
+    target.depth = draw::HostDepth{.clip_from_view = *clip_from_view};
+  }
+  return drawn_by(renderer, camera, py::none(), [&](const scene::PlacedCamera &placed, const auto & /*report*/) {
+    return renderer.draw(placed, seconds, target);
+  });
+}
+
 /** Whether Renderer.layers returns the layer. */
 bool is_array(const eevee::PictureLayer &layer)
 {
@@ -376,12 +412,16 @@ py::array_t<float> picture_array(std::vector<glm::vec4> pixels, glm::ivec2 size_
 void define_renderer(py::module_ &module)
 {
   py::class_<Device, std::shared_ptr<Device>>(module, "Device",
-                                              "A GPU, or a software rasteriser, without a window. It and its renderers "
-                                              "are used on one thread: the one that made "
-                                              "it.")
-      .def(py::init<const std::string &>(), py::arg("backend") = "auto",
-           "backend: 'gl', 'vulkan', or 'auto': OpenGL if it starts, otherwise Vulkan. Raises DeviceError, which names "
-           "each way that was tried and why it failed.")
+                                              "A GPU, or a software rasteriser. It and its renderers are used on one "
+                                              "thread: the one that made it.")
+      .def(py::init<const std::string &, bool>(), py::arg("backend") = "auto", py::kw_only(), py::arg("host") = false,
+           "backend: 'gl', 'vulkan', or 'auto': OpenGL if it starts, otherwise Vulkan. host: draw in the context of "
+           "OpenGL that is current on this thread, 4.5 core or later, for Renderer.draw; it must be current in each "
+           "later call, too, and its state is restored after each. Raises DeviceError, which names each way that was "
+           "tried and why it failed.")
+      .def("free", &Device::free,
+           "Free the device, for hosts that go on without it. Its renderers must be gone. What a device with a host "
+           "has in its context is freed by this call alone.")
       .def_property_readonly(
           "description", [](Device &device) { return device.use().description(); }, "API, driver and kind of context.")
       .def_property_readonly(
@@ -449,6 +489,18 @@ void define_renderer(py::module_ &module)
       "For viewports: the picture within about this time, 0.0001 to 10 s, and whether it is complete. After a "
       "change, the first call draws a whole picture, in a lower resolution and with smaller shadows if the time "
       "asks for it; later calls refine it. The complete one equals that of render().");
+  renderer.def(
+      "draw", &draw, py::arg("seconds"), py::arg("framebuffer"), py::arg("framebuffer_size"),
+      py::arg("rectangle") = py::none(), py::arg("camera") = py::none(), py::kw_only(), py::arg("encoding") = "display",
+      py::arg("over") = false, py::arg("clip_from_view") = py::none(),
+      "As refine(), into a framebuffer of the host, for devices of Device(host=True). Returns whether the picture is "
+      "complete.\n\n"
+      "`framebuffer`: its name in OpenGL; 0: the window's. `framebuffer_size`: width and height, pixels. `rectangle`: "
+      "left, bottom, width and height in it, pixels; None: all of it. A picture of another size is scaled. `encoding`: "
+      "'display', 'linear' (scene-linear, for formats of floating point), or 'srgb' (for sRGB formats, which apply the "
+      "transfer function). `over`: blend the picture over the content. `clip_from_view`: the host's projection, depth "
+      "from -1 to 1; the picture's depth is then written, and with `over` compared. Further arguments: view_transform, "
+      "'standard', 'raw', 'agx' or 'pbr-neutral' (default); exposure, stops.");
   renderer.def_static("descriptions", &descriptions,
                       "A Description of each property, by its name, for programs that show them.");
   renderer.def(

@@ -29,7 +29,7 @@ void check_process(pid_t process)
   }
 }
 
-std::unique_ptr<gpu::Device> make_device(const std::string &backend)
+std::unique_ptr<gpu::Device> make_device(const std::string &backend, bool is_host)
 {
   if (std::ranges::find(gpu::drawing_backend_names, backend) == gpu::drawing_backend_names.end()) {
     throw std::invalid_argument(
@@ -42,20 +42,24 @@ std::unique_ptr<gpu::Device> make_device(const std::string &backend)
 #ifdef GNOMON_PYTHON_VULKAN
   desc.compile_spirv = shader_check::compile_spirv;
 #endif
+  if (is_host) {
+    desc.host = gpu::GlHost{};
+  }
   return gpu::create_device(desc);
 }
 
 }  // namespace
 
-Device::Device(const std::string &backend) : device_(make_device(backend)) {}
+Device::Device(const std::string &backend, bool is_host) : is_host_(is_host), device_(make_device(backend, is_host)) {}
 
 Device::~Device()
 {
-  if (is_at_home()) {
+  if (!device_ || (is_at_home() && !is_host_)) {
     return;
   }
-  // Its context cannot be current here. Not to free it is the lesser harm, and none in a forked child.
-  if (::getpid() == process_) {
+  // Its context cannot be current here, or need not be: a host's may be gone. Not to free it is the lesser harm, and
+  // none in a forked child.
+  if (::getpid() == process_ && !is_host_) {
     std::fputs("gnomon: a device is not freed, because the last reference to it is dropped on another thread\n",
                stderr);
   }
@@ -95,17 +99,34 @@ gpu::Device &Device::use()
   if (is_drawing) {
     throw gpu::Error("the device is drawing");
   }
+  if (!device_) {
+    throw gpu::Error("the device was freed");
+  }
   const std::lock_guard lock(mutex_);
-  left_.clear();
+  if (!left_.empty()) {
+    // Throws if the host's context is not current.
+    device_->finish();
+    left_.clear();
+  }
   return *device_;
 }
 
 void Device::dispose(std::shared_ptr<void> resources)
 {
-  if (!is_at_home() || is_drawing) {
+  if (!is_at_home() || is_drawing || is_host_) {
     const std::lock_guard lock(mutex_);
     left_.push_back(std::move(resources));
   }
+}
+
+void Device::free()
+{
+  gpu::Device &device = use();
+  if (renderer_count != 0) {
+    throw gpu::Error(fmt::format("the device cannot be freed: it has {} renderers", renderer_count.load()));
+  }
+  device.finish();
+  device_.reset();
 }
 
 Renderer::Renderer(std::shared_ptr<Device> device, ScenePtr scene, glm::ivec2 size_px, const eevee::Settings &settings)
@@ -114,10 +135,12 @@ Renderer::Renderer(std::shared_ptr<Device> device, ScenePtr scene, glm::ivec2 si
   gpu::Device &used = device_->use();
   const scene::Scene &drawn = scene->scene;
   state_ = std::shared_ptr<State>(new State{std::move(scene), {used, drawn, size_px, settings}});
+  device_->renderer_count++;
 }
 
 Renderer::~Renderer()
 {
+  device_->renderer_count--;
   device_->dispose(std::move(state_));
 }
 
@@ -176,10 +199,19 @@ Layers Renderer::render_layers(const scene::PlacedCamera &camera, const eevee::D
   return layers;
 }
 
+bool Renderer::draw(const scene::PlacedCamera &camera, double seconds, const draw::Target &target)
+{
+  device_->use();
+  const Drawing drawing(*device_);
+  const bool is_complete = state_->renderer.draw_within(seconds, camera, target);
+  samples_drawn_ = state_->renderer.budget_report().samples_drawn;
+  frame_seconds_ = state_->renderer.budget_report().seconds;
+  return is_complete;
+}
+
 std::pair<std::vector<glm::vec4>, bool> Renderer::refine(const scene::PlacedCamera &camera, double seconds)
 {
   gpu::Device &device = device_->use();
-  const Drawing drawing(*device_);
   const glm::ivec2 size = size_px();
   std::optional<draw::TargetTexture> &shown = state_->shown;
   if (!shown || glm::ivec2(shown->texture().desc().width, shown->texture().desc().height) != size) {
@@ -187,9 +219,7 @@ std::pair<std::vector<glm::vec4>, bool> Renderer::refine(const scene::PlacedCame
   }
   draw::Target target = shown->target();
   target.encoding = draw::Encoding::SceneLinear;
-  const bool is_complete = state_->renderer.draw_within(seconds, camera, target);
-  samples_drawn_ = state_->renderer.budget_report().samples_drawn;
-  frame_seconds_ = state_->renderer.budget_report().seconds;
+  const bool is_complete = draw(camera, seconds, target);
   return {gpu::read_as<glm::vec4>(device, shown->texture()), is_complete};
 }
 

@@ -6,6 +6,7 @@
 #include "draw_target.hh"
 #include "eevee_picture_layers.hh"
 
+#include <atomic>
 #include <mutex>
 #include <thread>
 
@@ -14,26 +15,32 @@
 namespace gnomon::python {
 
 /**
- * A device with a context of its own. Its thread is the one that constructs it, and all others get an error. Python may
- * drop the last reference to an object on any thread; what belongs to the device is then freed by the next call on its
- * thread. A driver's threads do not exist in a forked child, which would wait for them for ever: there all functions
- * throw, and nothing is freed.
+ * A device with a context of its own, or with that of a host. Its thread is the one that constructs it, and all others
+ * get an error. Python may drop the last reference to an object on any thread, and while another context is current;
+ * what belongs to the device is then freed by the next call on its thread. A driver's threads do not exist in a forked
+ * child, which would wait for them for ever: there all functions throw, and nothing is freed.
  */
 class Device {
  public:
   /**
-   * \a backend: of gpu::drawing_backend_names. \throws std::invalid_argument if it is another; gpu::Error, also in a
-   * child of a process that made a device before the fork
+   * \a backend: of gpu::drawing_backend_names. \a is_host: draw in the context of OpenGL that is current on the thread.
+   * It must be current in each later call, too. Only free() then frees the device.
+   * \throws std::invalid_argument if the backend is another; gpu::Error, also in a child of a process that made a
+   * device before the fork
    */
-  explicit Device(const std::string &backend);
+  Device(const std::string &backend, bool is_host);
   ~Device();
   Device(const Device &) = delete;
   Device &operator=(const Device &) = delete;
 
-  /** \throws gpu::Error on other threads, in forked children, and during a draw */
+  /** \throws gpu::Error on other threads, in forked children, during a draw, and after free() */
   gpu::Device &use();
   /** Destroys \a resources on the device's thread. */
   void dispose(std::shared_ptr<void> resources);
+  /** Frees the device. \throws gpu::Error as use(), and while there are renderers; the device is then as before */
+  void free();
+  /** On any thread. */
+  std::atomic<int> renderer_count = 0;
   /** During a draw, in which the interpreter may run handlers of signals. */
   bool is_drawing = false;
 
@@ -43,6 +50,8 @@ class Device {
 
   const std::thread::id thread_ = std::this_thread::get_id();
   const pid_t process_ = ::getpid();
+  const bool is_host_;
+  /** Empty after free(). */
   std::unique_ptr<gpu::Device> device_;
   std::mutex mutex_;
   /** Objects that were left on other threads. */
@@ -99,6 +108,8 @@ class Renderer {
    * better with each call. Called as render(). \return the picture and whether it is complete \throws gpu::Error
    */
   std::pair<std::vector<glm::vec4>, bool> refine(const scene::PlacedCamera &camera, double seconds);
+  /** As refine(), into \a target. \return whether the picture is complete */
+  bool draw(const scene::PlacedCamera &camera, double seconds, const draw::Target &target);
   [[nodiscard]] Report report();
   /** \throws gpu::Error */
   eevee::SceneRenderer &use();

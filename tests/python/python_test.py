@@ -3,6 +3,7 @@
 
 import ast
 import copy
+import ctypes
 import gc
 import inspect
 import json
@@ -770,6 +771,144 @@ class Pictures(unittest.TestCase):
             gnomon.image_error(picture, exact[:, 1:])
         with self.assertRaisesRegex(ValueError, "sample_count 3"):
             gnomon.trace(scene, (32, 18), sample_count=3)
+
+
+class HostContext:
+    """A context of OpenGL as a host has it, current on the thread, and its functions by name."""
+
+    def __init__(self):
+        self.egl = ctypes.CDLL("libEGL.so.1")
+        for name in ("eglGetPlatformDisplay", "eglCreateContext", "eglGetProcAddress"):
+            getattr(self.egl, name).restype = ctypes.c_void_p
+        surfaceless = 0x31DD
+        self.display = ctypes.c_void_p(self.egl.eglGetPlatformDisplay(surfaceless, None, None))
+        opengl = 0x30A2
+        version = (ctypes.c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 1, 0x3038)
+        if not self.egl.eglInitialize(self.display, None, None) or not self.egl.eglBindAPI(opengl):
+            raise unittest.SkipTest("EGL has no display without surfaces")
+        self.context = ctypes.c_void_p(self.egl.eglCreateContext(self.display, None, None, version))
+        if not self.make_current():
+            raise unittest.SkipTest("there is no OpenGL 4.5")
+
+    def make_current(self, is_current=True):
+        return self.egl.eglMakeCurrent(self.display, None, None, self.context if is_current else None)
+
+    def __getattr__(self, name):
+        return ctypes.CFUNCTYPE(None, *{"glClearColor": [ctypes.c_float] * 4, "glClearDepth": [ctypes.c_double]}.get(name, ()))(
+            self.egl.eglGetProcAddress(name.encode()))
+
+    def integer(self, name):
+        value = ctypes.c_int(-1)
+        self.glGetIntegerv(name, ctypes.byref(value))
+        return value.value
+
+    def framebuffer(self, width, height):
+        """The name of a framebuffer with colours and depths of floats, cleared to 0.25 and 1."""
+        names = (ctypes.c_uint * 3)()
+        self.glGenFramebuffers(1, names)
+        self.glGenRenderbuffers(2, ctypes.byref(names, 4))
+        self.glBindFramebuffer(0x8D40, names[0])
+        for buffer, internal_format, attachment in ((names[1], 0x8814, 0x8CE0), (names[2], 0x8CAC, 0x8D00)):
+            self.glBindRenderbuffer(0x8D41, buffer)
+            self.glRenderbufferStorage(0x8D41, internal_format, width, height)
+            self.glFramebufferRenderbuffer(0x8D40, attachment, 0x8D41, buffer)
+        self.glClearColor(0.25, 0.25, 0.25, 0.25)
+        self.glClearDepth(1.0)
+        self.glClear(0x4100)
+        return names[0]
+
+    def pixels(self, width, height, is_depth=False):
+        """Of the bound framebuffer; the top row is the first."""
+        result = numpy.zeros((height, width) if is_depth else (height, width, 4), numpy.float32)
+        self.glReadPixels(0, 0, width, height, 0x1902 if is_depth else 0x1908, 0x1406, ctypes.c_void_p(result.ctypes.data))
+        return result[::-1]
+
+
+class Hosts(unittest.TestCase):
+    FRAMEBUFFER_BINDING = 0x8CA6
+
+    def setUp(self):
+        self.context = HostContext()
+        self.addCleanup(self.context.make_current, False)
+
+    def device(self):
+        device = gnomon.Device(host=True)
+        self.addCleanup(device.free)
+        return device
+
+    def test_a_picture_is_drawn_into_a_framebuffer(self):
+        framebuffer = self.context.framebuffer(40, 30)
+        renderer = gnomon.Renderer(self.device(), square_scene(), (32, 18), **SMALL)
+        whole = renderer.render()
+        near, far = 1.0, 16.0
+        projection = numpy.array([(1, 0, 0, 0), (0, 1, 0, 0), (0, 0, (near + far) / (near - far), 2 * near * far / (near - far)), (0, 0, -1, 0)])
+        for _ in range(1000):
+            is_complete = renderer.draw(
+                0.05, framebuffer, (40, 30), (5, 2, 32, 18), encoding="linear", clip_from_view=projection)
+            if is_complete:
+                break
+        self.assertTrue(is_complete)
+        self.assertEqual(self.context.integer(self.FRAMEBUFFER_BINDING), framebuffer)
+        pixels = self.context.pixels(40, 30)
+        inside = numpy.zeros((30, 40), bool)
+        inside[10:28, 5:37] = True
+        numpy.testing.assert_array_equal(pixels[inside].reshape(18, 32, 4), whole)
+        self.assertTrue((pixels[~inside] == 0.25).all())
+        # The square is 4 m before the eye.
+        ndc = (projection[2, 2] * -4 + projection[2, 3]) / 4
+        depths = self.context.pixels(40, 30, is_depth=True)
+        numpy.testing.assert_allclose(depths[inside], (ndc + 1) / 2, atol=1e-6)
+        self.assertTrue((depths[~inside] == 1).all())
+        del renderer
+
+    def test_display_colours_are_those_of_the_view_transform(self):
+        framebuffer = self.context.framebuffer(32, 18)
+        renderer = gnomon.Renderer(self.device(), square_scene(), (32, 18), **SMALL)
+        while not renderer.draw(0.05, framebuffer, (32, 18), view_transform="standard", exposure=-1):
+            pass
+        linear = numpy.array((0.25, 0.125, 0.0625))
+        numpy.testing.assert_allclose(self.context.pixels(32, 18)[9, 16, :3], 1.055 * linear**(1 / 2.4) - 0.055, atol=1e-4)
+        del renderer
+
+    def test_mistakes_are_errors(self):
+        device = self.device()
+        framebuffer = self.context.framebuffer(32, 18)
+        renderer = gnomon.Renderer(device, square_scene(), (32, 18), **SMALL)
+        for arguments, error, message in (
+                ({"encoding": "gamma"}, ValueError, "'linear'"),
+                ({"exposure": 1e3}, gnomon.InvalidEdit, "exposure 1000 is not"),
+                ({"view_transform": "none"}, gnomon.InvalidEdit, "'agx'"),
+                ({"clip_from_view": numpy.zeros((4, 4))}, gnomon.DeviceError, "depth"),
+                ({"rectangle": (0, 0, 0, 9)}, ValueError, "0x9 pixels is empty")):
+            with self.assertRaisesRegex(error, message):
+                renderer.draw(0.05, framebuffer, (32, 18), **arguments)
+        with self.assertRaisesRegex(gnomon.DeviceError, "1 renderers"):
+            device.free()
+        self.context.make_current(False)
+        with self.assertRaisesRegex(gnomon.DeviceError, "current"):
+            renderer.draw(0.05, framebuffer, (32, 18))
+        # What was on the device is freed by the next call with the context.
+        del renderer
+        with self.assertRaisesRegex(gnomon.DeviceError, "current"):
+            device.memory_bytes
+        with self.assertRaisesRegex(gnomon.DeviceError, "current"):
+            gnomon.Device(host=True)
+        self.context.make_current()
+        self.assertLess(device.memory_bytes, 1000)
+        with self.assertRaisesRegex(gnomon.DeviceError, "host"):
+            gnomon.Device(backend="vulkan", host=True)
+
+    def test_a_freed_device_says_so(self):
+        device = gnomon.Device(host=True)
+        device.free()
+        with self.assertRaisesRegex(gnomon.DeviceError, "was freed"):
+            device.memory_bytes
+
+    def test_a_device_of_its_own_draws_into_no_framebuffer_of_a_host(self):
+        self.context.make_current(False)
+        renderer = gnomon.Renderer(gnomon.Device(backend="gl"), square_scene(), (32, 18), **SMALL)
+        with self.assertRaisesRegex(gnomon.DeviceError, "host"):
+            renderer.draw(0.05, 0, (32, 18))
 
 
 class Page(unittest.TestCase):
