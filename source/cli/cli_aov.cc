@@ -61,22 +61,6 @@ Layer layer_of(const eevee::PictureLayer &picture_layer, std::string name, std::
   return layer;
 }
 
-/** The names of objects by draw::ObjectIndex: those of their nodes or of their materials. Empty: no object. */
-std::vector<std::string> object_names(eevee::SceneRenderer &renderer, bool is_material)
-{
-  const scene::Scene &scene = renderer.render_scene().scene();
-  const draw::ObjectBuffer &objects = renderer.render_scene().objects();
-  std::vector<std::string> names(objects.index_end());
-  for (draw::ObjectIndex i = draw::object_identity + 1; i < objects.index_end(); i++) {
-    if (objects.is_live(i)) {
-      const render_scene::RenderObject &object = renderer.render_scene().object(i);
-      names[i] = is_material ? scene.material_of(scene.meshes()[object.mesh]).name : scene.nodes()[object.node].name;
-      names[i] = names[i].empty() ? "unnamed" : names[i];
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 std::string aov_names()
@@ -234,7 +218,7 @@ void Aov::add_surfaces(eevee::SceneRenderer &renderer, const scene::PlacedCamera
     const bool has_materials = layer.source == LayerSource::Materials;
     if (has(layer.name) && (has_materials || layer.source == LayerSource::Objects)) {
       Cryptomatte matte = make_cryptomatte(has_materials ? "CryptoMaterial" : "CryptoObject", surfaces.objects,
-                                           object_names(renderer, has_materials));
+                                           eevee::object_names(renderer, has_materials));
       std::ranges::move(matte.layers, std::back_inserter(layers.layers));
       std::ranges::move(matte.metadata, std::back_inserter(layers.metadata));
     }

@@ -2,6 +2,7 @@
 #include "python_fields.hh"
 #include "python_renderer.hh"
 
+#include "eevee_cryptomatte.hh"
 #include "eevee_settings.hh"
 #include "gltf_export.hh"
 #include "gltf_import.hh"
@@ -260,8 +261,7 @@ bool draw(Renderer &renderer, double seconds, std::uint32_t framebuffer, const g
 bool is_array(const eevee::PictureLayer &layer)
 {
   using eevee::LayerSource;
-  return layer.source != LayerSource::Visibility && layer.source != LayerSource::Objects &&
-         layer.source != LayerSource::Materials;
+  return layer.source != LayerSource::Visibility;
 }
 
 /** Channels of a picture_array, without a copy. A single one has no axis of its own. */
@@ -366,6 +366,14 @@ py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
       for (auto &[lamp, values] : drawn.light) {
         arrays[py::str(fmt::format("{}.{}", layer.name, lamp))] =
             channels(picture_array(std::move(values), size_px), layer.first, count);
+      }
+    }
+    if (layer.source == LayerSource::Objects || layer.source == LayerSource::Materials) {
+      const std::vector<std::string> things =
+          eevee::object_names(renderer.use(), layer.source == LayerSource::Materials);
+      eevee::CryptomatteLayers mattes = eevee::cryptomatte_layers(drawn.surfaces.objects, things);
+      for (std::size_t i = 0; i < mattes.size(); i++) {
+        arrays[py::str(fmt::format("{}.{}", layer.name, i))] = picture_array(std::move(mattes[i]), size_px);
       }
     }
   }
@@ -511,11 +519,19 @@ void define_renderer(py::module_ &module)
       "world "
       "space. 'normal': unit vectors, world space. 'albedo', 'roughness': multiplied by the coverage of the pixel. "
       "'light': light.NAME for each name of lamps, W/(sr m²). 'emission', 'world': the rest of the light. 'ids': "
-      "node_ids and material_ids, int32 indices in the scene's nodes and materials, -1 for none.\n\n"
+      "node_ids and material_ids, int32 indices in the scene's nodes and materials, -1 for none. 'crypto_object', "
+      "'crypto_material': crypto_object.0, .1 and .2, each with two of the nodes that cover a pixel: cryptomatte_id of "
+      "the name, coverage, id, coverage.\n\n"
       "depth, position, normal and ids are those of the surface at the centre of a pixel. Blended surfaces are not in "
       "them. Arrays of the same kind share their memory. Needs a sample_count and no noise_threshold. `progress`: as "
       "in render(), for the samples of the picture.");
   renderer.def("report", &Renderer::report, "A Report on the last picture.");
+
+  module.def("cryptomatte_id", &eevee::cryptomatte_id, py::arg("name"),
+             "The number of a name in the layers 'crypto_object' and 'crypto_material'. Its bits are those of the "
+             "manifest of Cryptomatte.");
+  module.def("cryptomatte_hash", &eevee::murmur_hash3, py::arg("name"),
+             "MurmurHash3_32 of a name, for the metadata of Cryptomatte.");
 }
 
 }  // namespace gnomon::python

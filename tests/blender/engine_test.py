@@ -71,6 +71,31 @@ class EngineTest(unittest.TestCase):
             bpy.ops.render.render(write_still=True)
         self.assertFalse(os.path.exists(self.scene.render.filepath))
 
+    def test_compositing_takes_mattes_by_name(self):
+        """The cube's matte is its coverage: the alpha of a picture in which it is alone."""
+        layer = bpy.context.view_layer
+        layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+        layer.pass_cryptomatte_depth = 4
+        bpy.ops.mesh.primitive_plane_add(size=6, location=(0, 0, -1))
+        self.scene.use_nodes = True
+        tree = self.scene.node_tree
+        tree.nodes.clear()
+        render_layers, matte, composite = (
+            tree.nodes.new(f"CompositorNode{kind}") for kind in ('RLayers', 'CryptomatteV2', 'Composite'))
+        self.assertEqual([each.name for each in render_layers.outputs if each.enabled and each.name.startswith('Crypto')],
+                         ['CryptoObject00', 'CryptoObject01', 'CryptoMaterial00', 'CryptoMaterial01'])
+        matte.matte_id = 'Cube'
+        tree.links.new(render_layers.outputs['Image'], matte.inputs['Image'])
+        tree.links.new(matte.outputs['Matte'], composite.inputs['Image'])
+        mask = rendered('matte')[:, :, 0]
+        self.assertEqual(bpy.context.window_manager.gnomon_report, "")
+        self.scene.use_nodes = False
+        bpy.data.objects['Plane'].hide_render = True
+        self.scene.render.film_transparent = True
+        # The plane covers edges of the cube's picture from behind alone.
+        numpy.testing.assert_allclose(mask, rendered('alone')[:, :, 3], atol=1e-5)
+        self.assertGreater(((mask > 0.1) & (mask < 0.9)).sum(), 20)
+
     def test_settings_are_those_of_the_descriptions(self):
         own = self.scene.gnomon
         described = settings.gnomon.Renderer.descriptions()

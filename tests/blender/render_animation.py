@@ -11,7 +11,7 @@ scene.render.engine = 'GNOMON'
 scene.gnomon.sample_count = 8
 scene.render.resolution_x, scene.render.resolution_y = 160, 90
 layer = bpy.context.view_layer
-for name in ('z', 'position', 'normal', 'diffuse_color', 'emit', 'environment'):
+for name in ('z', 'position', 'normal', 'diffuse_color', 'emit', 'environment', 'cryptomatte_object', 'cryptomatte_material'):
     setattr(layer, f'use_pass_{name}', True)
 scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'
 scene.render.image_settings.color_depth = '32'

@@ -141,22 +141,22 @@ TEST_F(CliTest, EachLayerOfAFileIsAcceptedAndDescribed)
 
 TEST(Cryptomatte, HashesAndIdsAreThoseOfTheSpecification)
 {
-  EXPECT_EQ(cli::murmur_hash3(""), 0U);
-  EXPECT_EQ(cli::murmur_hash3("hello"), 0x248BFA47U);
-  EXPECT_EQ(cli::murmur_hash3("The quick brown fox jumps over the lazy dog"), 0x2E4FF723U);
-  EXPECT_FLOAT_EQ(cli::cryptomatte_id("hello"), 6.0705627102400005616e-17F);
-  EXPECT_FLOAT_EQ(cli::cryptomatte_id("cube"), -4.08461912519e+15F);
-  EXPECT_FLOAT_EQ(cli::cryptomatte_id("sphere"), 2.79018604383e+15F);
-  EXPECT_FLOAT_EQ(cli::cryptomatte_id("plane"), 3.66557617593e-11F);
+  EXPECT_EQ(eevee::murmur_hash3(""), 0U);
+  EXPECT_EQ(eevee::murmur_hash3("hello"), 0x248BFA47U);
+  EXPECT_EQ(eevee::murmur_hash3("The quick brown fox jumps over the lazy dog"), 0x2E4FF723U);
+  EXPECT_FLOAT_EQ(eevee::cryptomatte_id("hello"), 6.0705627102400005616e-17F);
+  EXPECT_FLOAT_EQ(eevee::cryptomatte_id("cube"), -4.08461912519e+15F);
+  EXPECT_FLOAT_EQ(eevee::cryptomatte_id("sphere"), 2.79018604383e+15F);
+  EXPECT_FLOAT_EQ(eevee::cryptomatte_id("plane"), 3.66557617593e-11F);
   // A hash with an exponent of infinities and NaN.
-  ASSERT_EQ(cli::murmur_hash3("454"), 0xFFBFFB25U);
-  EXPECT_EQ(std::bit_cast<std::uint32_t>(cli::cryptomatte_id("454")), 0xFF3FFB25U);
+  ASSERT_EQ(eevee::murmur_hash3("454"), 0xFFBFFB25U);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(eevee::cryptomatte_id("454")), 0xFF3FFB25U);
 }
 
 TEST(Cryptomatte, RanksAreByCoverageAndEqualNamesAreOneThing)
 {
   const std::vector<std::string> names = {"", "cube", "sphere", "cube", "a", "b", "c", "d", "e"};
-  const std::vector<std::vector<std::pair<std::uint32_t, float>>> pixels = {
+  const std::vector<std::vector<eevee::Coverage>> pixels = {
       {{2, 0.5F}, {1, 0.3F}, {3, 0.25F}},
       {},
       {{1, 0.3F}, {2, 0.2F}, {4, 0.15F}, {5, 0.1F}, {6, 0.09F}, {7, 0.08F}, {8, 0.01F}}};
@@ -164,8 +164,8 @@ TEST(Cryptomatte, RanksAreByCoverageAndEqualNamesAreOneThing)
   ASSERT_EQ(matte.layers.size(), 3U);
   EXPECT_EQ(matte.layers[2].name, "CryptoObject02");
   EXPECT_EQ(matte.layers[0].channels, "RGBA");
-  const float cube = cli::cryptomatte_id("cube");
-  const float sphere = cli::cryptomatte_id("sphere");
+  const float cube = eevee::cryptomatte_id("cube");
+  const float sphere = eevee::cryptomatte_id("sphere");
   EXPECT_EQ(matte.layers[0].values,
             (std::vector<float>{cube, 0.55F, sphere, 0.5F, 0, 0, 0, 0, cube, 0.3F, sphere, 0.2F}));
   EXPECT_EQ(matte.layers[2].values[11], 0.08F) << "the seventh thing is left out";

@@ -718,6 +718,28 @@ class Pictures(unittest.TestCase):
                 draw(progress=end)
             self.assertEqual(renderer.report().sample_count, 2)
 
+    def test_mattes_are_coverages_by_name(self):
+        scene = square_scene()
+        scene.nodes[0].parent_from_node = numpy.diag([0.05, 0.05, 1.0, 1.0])
+        other = scene.add_material(name="other")
+        scene.add_node(name="far", meshes=[scene.add_mesh(
+            scene.meshes[0].positions, scene.meshes[0].normals, scene.meshes[0].triangles, material=other)], position=(0, 0, -1))
+        renderer = gnomon.Renderer(self.device, scene, (32, 18), sample_count=64)
+        layers = renderer.layers(["crypto_object", "crypto_material", "combined", "normal"])
+        names = {"crypto_object": ("square", "far"), "crypto_material": ("grey", "other")}
+        covered = {}
+        for layer, (near, far) in names.items():
+            ranks = numpy.concatenate([layers[f"{layer}.{i}"].reshape(18, 32, 2, 2) for i in range(3)], axis=2)
+            self.assertTrue((ranks[:, :, :-1, 1] >= ranks[:, :, 1:, 1]).all())
+            for name in near, far:
+                covered[name] = numpy.where(ranks[..., 0] == numpy.float32(gnomon.cryptomatte_id(name)), ranks[..., 1], 0).sum(axis=2)
+            numpy.testing.assert_allclose(covered[near] + covered[far], layers["combined"][..., 3], atol=1e-6)
+        numpy.testing.assert_array_equal(covered["square"], covered["grey"])
+        # 0.9 m wide, 4 m before the eye.
+        height = 0.9 / (8 * math.tan(0.2)) * 18
+        self.assertAlmostEqual(covered["square"].sum(), height**2, delta=0.02 * height**2)
+        self.assertEqual(gnomon.cryptomatte_hash("hello"), 0x248BFA47)
+
     def test_refined_pictures_are_complete_ones_at_last(self):
         scene = gnomon.load(PLAZA)
         renderer = gnomon.Renderer(self.device, scene, (48, 27), sample_count=3, map_size_px=256, cube_size_px=256)

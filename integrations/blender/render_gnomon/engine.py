@@ -47,17 +47,30 @@ class Cancelled(Exception):
 
 
 class Pass:
-    """A pass of Blender, and the layer of Gnomon that it shows."""
+    """A pass of Blender, and the layer of Gnomon that it shows. array: the name of the layer's array, if it is another."""
 
-    def __init__(self, name, channels, kind, option, layer):
+    def __init__(self, name, channels, kind, option, layer, array=None):
         self.name = name
         self.channels = channels
         self.kind = kind
         self.option = option
         self.layer = layer
+        self.array = array or layer
 
     def is_of(self, view_layer):
         return self.option is None or getattr(view_layer, self.option)
+
+
+class Matte(Pass):
+    """One of the passes of a Cryptomatte, each of which holds two levels."""
+
+    def __init__(self, stem, option, layer, index):
+        super().__init__(f"{stem}{index:02}", 'RGBA', 'COLOR', option, layer, f"{layer}.{index}")
+        self.stem = stem
+        self.index = index
+
+    def is_of(self, view_layer):
+        return super().is_of(view_layer) and 2 * self.index < view_layer.pass_cryptomatte_depth
 
 
 PASSES = (
@@ -68,7 +81,17 @@ PASSES = (
     Pass('DiffCol', 'RGB', 'COLOR', 'use_pass_diffuse_color', 'albedo'),
     Pass('Emit', 'RGB', 'COLOR', 'use_pass_emit', 'emission'),
     Pass('Env', 'RGB', 'COLOR', 'use_pass_environment', 'world'),
+    *(Matte('CryptoObject', 'use_pass_cryptomatte_object', 'crypto_object', i) for i in range(3)),
+    *(Matte('CryptoMaterial', 'use_pass_cryptomatte_material', 'crypto_material', i) for i in range(3)),
 )
+
+
+def matte_metadata(gnomon, name, things):
+    """What compositing nodes read beside a Cryptomatte: entries of the picture's metadata, by their names."""
+    ids = {thing: f"{int(numpy.float32(gnomon.cryptomatte_id(thing)).view(numpy.uint32)):08x}" for thing in things}
+    key = f"cryptomatte/{gnomon.cryptomatte_hash(name):08x}"[:len("cryptomatte/") + 7]
+    return {f"{key}/name": name, f"{key}/hash": 'MurmurHash3_32', f"{key}/conversion": 'uint32_to_float32',
+            f"{key}/manifest": json.dumps(ids)}
 
 
 def values_of(render_pass, layer):
@@ -140,9 +163,14 @@ class GnomonEngine(bpy.types.RenderEngine):
             layers = {'combined': renderer.render(progress=tell)}
         else:
             layers = renderer.layers([each.layer for each in passes], progress=tell)
+        # As Blender's own engines name them.
+        things = {'CryptoObject': drawn.nodes, 'CryptoMaterial': drawn.materials}
+        metadata = {}
+        for stem in {each.stem for each in passes if isinstance(each, Matte)}:
+            metadata |= matte_metadata(gnomon, f"{depsgraph.view_layer.name}.{stem}", [thing.name for thing in things[stem]])
         report = renderer.report()
         remarks += report.warnings + report.limits
-        self.write(passes, layers, region_of(render, width, height))
+        self.write(passes, layers, metadata, region_of(render, width, height))
         for remark in remarks:
             self.report({'WARNING'}, f"Gnomon: {remark}")
         memory_mib = report.memory_bytes / settings.MIB
@@ -150,15 +178,18 @@ class GnomonEngine(bpy.types.RenderEngine):
         self.update_stats("Gnomon", f"{len(remarks)} remarks" if remarks else "")
         bpy.context.window_manager.gnomon_report = "\n".join(remarks)
 
-    def write(self, passes, layers, region):
+    def write(self, passes, layers, metadata, region):
         left, bottom, right, top = region
         result = self.begin_result(0, 0, right - left, top - bottom)
         written = result.layers[0].passes
         for each in passes:
-            layer = layers[each.layer]
+            layer = layers[each.array]
             height = layer.shape[0]
             written[each.name].rect = values_of(each, layer[height - top:height - bottom, left:right])
         self.end_result(result)
+        whole = self.get_result()
+        for name, value in metadata.items():
+            whole.stamp_data_add_field(name, value)
 
     def view_update(self, context, depsgraph):
         if settings.gnomon is None:
@@ -188,9 +219,9 @@ class GNOMON_PT_passes(settings.EnginePanel, bpy.types.Panel):
 
     def draw(self, context):
         self.layout.use_property_split = True
-        for each in PASSES:
-            if each.option is not None:
-                self.layout.prop(context.view_layer, each.option)
+        for option in dict.fromkeys(each.option for each in PASSES if each.option is not None):
+            self.layout.prop(context.view_layer, option)
+        self.layout.prop(context.view_layer, 'pass_cryptomatte_depth', text="Levels")
 
 
 CLASSES = (GnomonEngine, GNOMON_PT_passes)
