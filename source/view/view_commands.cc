@@ -188,7 +188,7 @@ void clip(App &app, Words words)
     viewport.unclip();
   }
   else {
-    viewport.clip(document(app), pixel(words[0], words[1]), pixel(words[2], words[3]));
+    viewport.clip(pixel(words[0], words[1]), pixel(words[2], words[3]));
   }
 }
 

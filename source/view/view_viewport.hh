@@ -69,7 +69,7 @@ class WindowViewport {
    * Show only what is seen now in the rectangle between two pixels, counted as for pick: the four planes through its
    * sides cut the rest off. \pre draw was called
    */
-  void clip(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px);
+  void clip(const glm::dvec2 &from_px, const glm::dvec2 &to_px);
   /** Undo clip; the next drag of the left button does not mark a rectangle for it either. */
   void unclip();
   /** Undo clip; if nothing is cut off, the next drag of the left button marks the rectangle for it. */

@@ -98,17 +98,11 @@ void WindowViewport::hide(const Document &document)
                        [&](auto node) { return std::ranges::find(hidden_, node) == hidden_.end(); });
 }
 
-void WindowViewport::clip(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px)
+void WindowViewport::clip(const glm::dvec2 &from_px, const glm::dvec2 &to_px)
 {
-  const glm::ivec2 first = glm::clamp(glm::ivec2(glm::min(from_px, to_px)), glm::ivec2(0), size_px_ - 1);
-  const glm::ivec2 end = glm::clamp(glm::ivec2(glm::ceil(glm::max(from_px, to_px))), first + 1, size_px_);
-  const gpu::Rectangle region{{first.x, size_px_.y - end.y}, end - first};
-  const draw::View part = overlay::view_of_region(drawn_view_, size_px_, region);
+  const auto upwards = [&](const glm::dvec2 &point) { return glm::dvec2(point.x, size_px_.y - point.y); };
   unclip();
-  for (const glm::vec4 &plane : std::span(part.frustum_planes_ws()).first(4)) {
-    const glm::dvec3 normal(plane);
-    clip_planes_ws_.emplace_back(normal, double(plane.w) - glm::dot(normal, document.render_scene().origin_ws()));
-  }
+  clip_planes_ws_ = overlay_->planes_around(drawn_view_, size_px_, upwards(from_px), upwards(to_px));
 }
 
 void WindowViewport::unclip()
@@ -211,7 +205,7 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     const Area area = *std::exchange(area_, std::nullopt);
     if (is_clip_asked_) {
-      clip(document, area.points_px.front(), area.points_px.back());
+      clip(area.points_px.front(), area.points_px.back());
     }
     else {
       select_area(document, area.outline_px(), reach, io.KeyShift);

@@ -82,8 +82,8 @@ struct Line {
 };
 
 /**
- * Picks and outlines the objects of a render scene, in pictures of any engine and viewport: a picture is given by its
- * view (SceneRenderer::view_of, draw::Viewport::view) and its size. The first call of each function creates the
+ * Picks, selects and outlines the objects of a render scene, in pictures of any engine and viewport: a picture is given
+ * by its view (SceneRenderer::view_of, draw::Viewport::view) and its size. The first call of each function creates the
  * resources that it needs. A host with several viewports may use one overlay for all; with one for each, lines of
  * pictures that refine at the same time need fewer passes.
  *
@@ -104,7 +104,7 @@ class Overlay {
   [[nodiscard]] std::optional<Hit> pick(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
   /**
    * The nodes with a surface, as pick() defines it, at the middle of at least one pixel within the closed polygon
-   * \a outline_px: a rectangle() or the path of a lasso. Corners are in pixels from the lower left corner of the
+   * \a polygon_px: a rectangle() or the path of a lasso. Corners are in pixels from the lower left corner of the
    * picture, whose lowest left pixel has its middle at (0.5, 0.5); they may be outside of the picture, and fewer than 3
    * enclose nothing. \see is_inside. Each node is there once, in the order of the objects.
    *
@@ -113,9 +113,17 @@ class Overlay {
    * \throws gpu::Error if a corner is not finite
    */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> select(const draw::View &view, glm::ivec2 size_px,
-                                                               std::span<const glm::dvec2> outline_px, Reach reach);
+                                                               std::span<const glm::dvec2> polygon_px, Reach reach);
   /**
-   * Draw a line around each visible object of \a nodes over the content of \a target, also where other objects hide it.
+   * The four planes through the sides of a rectangle of the picture, for SceneRenderer::set_clip_planes: they leave
+   * what the rectangle shows, near and far. \a from_px and \a to_px: as of rectangle(). The rectangle is rounded to
+   * whole pixels, at least one, and those outside of the picture are left out.
+   */
+  [[nodiscard]] std::vector<glm::dvec4> planes_around(const draw::View &view, glm::ivec2 size_px,
+                                                      const glm::dvec2 &from_px, const glm::dvec2 &to_px) const;
+  /**
+   * Draw a line around each object of \a nodes over the content of \a target, also where other objects hide it. Nodes
+   * that are not visible (Node::is_visible, or hidden in the view) have none. An empty target stays as it is.
    * \a color: not premultiplied, and stored as Target::encoding stores; the view transform does not change it.
    * Target::composition and depth have no effect. \throws gpu::Error as draw::check
    */

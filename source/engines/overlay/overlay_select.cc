@@ -62,6 +62,16 @@ std::vector<std::uint8_t> inside_of(std::span<const glm::dvec2> corners, const g
   return inside;
 }
 
+/** \throws gpu::Error if a corner is not finite */
+void check_finite(std::span<const glm::dvec2> corners)
+{
+  const auto wrong = std::ranges::find_if(
+      corners, [](const glm::dvec2 &corner) { return !(std::isfinite(corner.x) && std::isfinite(corner.y)); });
+  if (wrong != corners.end()) {
+    throw gpu::Error("overlay: corner {}, {}, {}, is not finite", wrong - corners.begin(), wrong->x, wrong->y);
+  }
+}
+
 }  // namespace
 
 std::array<glm::dvec2, 4> rectangle(const glm::dvec2 &from_px, const glm::dvec2 &to_px)
@@ -76,21 +86,32 @@ bool is_inside(std::span<const glm::dvec2> corners, const glm::dvec2 &point)
   return std::ranges::count_if(crossings, [&](double x) { return x <= point.x; }) % 2 == 1;
 }
 
+std::vector<glm::dvec4> Overlay::planes_around(const draw::View &view, glm::ivec2 size_px, const glm::dvec2 &from_px,
+                                               const glm::dvec2 &to_px) const
+{
+  check_finite(std::array{from_px, to_px});
+  const glm::dvec2 size(size_px);
+  const glm::ivec2 first(glm::clamp(glm::floor(glm::min(from_px, to_px)), glm::dvec2(0.0), size - 1.0));
+  const glm::ivec2 end(glm::clamp(glm::ceil(glm::max(from_px, to_px)), glm::dvec2(first) + 1.0, size));
+  const draw::View part = view_of_region(view, size_px, {first, end - first});
+  std::vector<glm::dvec4> planes;
+  for (const glm::vec4 &plane : std::span(part.frustum_planes_ws()).first(4)) {
+    const glm::dvec3 normal(plane);
+    planes.emplace_back(normal, double(plane.w) - glm::dot(normal, scene_.origin_ws()));
+  }
+  return planes;
+}
+
 std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, glm::ivec2 size_px,
-                                                        std::span<const glm::dvec2> outline_px, Reach reach)
+                                                        std::span<const glm::dvec2> polygon_px, Reach reach)
 {
   check_up_to_date();
-  const auto wrong = std::ranges::find_if(
-      outline_px, [](const glm::dvec2 &corner) { return !(std::isfinite(corner.x) && std::isfinite(corner.y)); });
-  if (wrong != outline_px.end()) {
-    throw gpu::Error("overlay: corner {} of an outline, {}, {}, is not finite", wrong - outline_px.begin(), wrong->x,
-                     wrong->y);
-  }
-  const gpu::Rectangle region = pixels_around(outline_px, size_px);
+  check_finite(polygon_px);
+  const gpu::Rectangle region = pixels_around(polygon_px, size_px);
   if (region.size_px.x == 0 || region.size_px.y == 0) {
     return {};
   }
-  const std::vector<std::uint8_t> inside = inside_of(outline_px, region);
+  const std::vector<std::uint8_t> inside = inside_of(polygon_px, region);
   const draw::View region_view = view_of_region(view, size_px, region);
   gpu::Device &device = scene_.device();
   // The target has the region's size, so that nothing else is read back.

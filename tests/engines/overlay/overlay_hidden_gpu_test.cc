@@ -11,6 +11,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <cmath>
 #include <map>
 
 namespace gnomon::overlay {
@@ -279,6 +280,38 @@ class ClipPlanesTest : public HiddenNodesTest {
 
   std::optional<render_scene::RenderScene> shared;
 };
+
+TEST_F(ClipPlanesTest, PlanesAroundARectangleLeaveWhatItShows)
+{
+  shared.emplace(*device, scene);
+  shared->update();
+  Overlay overlay(*shared);
+  for (const bool is_far : {false, true}) {
+    if (is_far) {
+      // The planes are those of the scene's world space, and not of the device's.
+      shared->set_origin({3.0, -2.0, 5.0});
+      shared->update();
+    }
+    // In any order of the corners.
+    const auto planes = overlay.planes_around(view({}), size_px, {40.0, 9.0}, {12.0, 29.5});
+    ASSERT_EQ(planes.size(), 4U);
+    int hits = 0;
+    for (glm::ivec2 pixel(0); pixel.y < size_px.y; pixel.y++) {
+      for (pixel.x = 0; pixel.x < size_px.x; pixel.x++) {
+        const bool is_inside = pixel.x >= 12 && pixel.x < 40 && pixel.y >= 9 && pixel.y < 30;
+        const std::optional<Hit> whole = overlay.pick(view({}), size_px, pixel);
+        const std::optional<Hit> cut = overlay.pick(view(planes), size_px, pixel);
+        ASSERT_EQ(cut ? cut->node : scene::Handle<scene::Node>(),
+                  whole && is_inside ? whole->node : scene::Handle<scene::Node>())
+            << pixel.x << ' ' << pixel.y;
+        hits += cut ? 1 : 0;
+      }
+    }
+    EXPECT_GT(hits, 20);
+  }
+  EXPECT_THROW(static_cast<void>(overlay.planes_around(view({}), size_px, {0.0, std::nan("")}, {1.0, 1.0})),
+               gpu::Error);
+}
 
 TEST_F(ClipPlanesTest, EnginesAndPickingShowTheSamePartsOfSurfaces)
 {
