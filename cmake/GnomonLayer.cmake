@@ -38,6 +38,11 @@ function(gnomon_compile_settings TARGET)
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual $<$<CXX_COMPILER_ID:Clang>:-Wno-keyword-macro -Wno-overlength-strings>
     $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
+  # Tests call this code for minutes, and GCC compiles it as fast as without. Tests themselves take 1.4 times as long to compile, and code
+  # for sanitizers 1.7 times by clang. The linker keeps one copy of each inline function, often ours, so that glslang is faster, too.
+  if(NOT "TEST" IN_LIST ARGN AND NOT GNOMON_SANITIZE)
+    target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Debug>:-O1>)
+  endif()
   # Messages name files of the sources, and builds in two folders are equal (scripts/release).
   target_compile_options(${TARGET} PRIVATE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
   if(GNOMON_SANITIZE)

@@ -161,8 +161,9 @@ class Preprocessor {
     }
     open_files_.push_back(path);
     for (std::size_t i = 0; i < lines.size(); i++) {
-      const bool is_position_lost = follow_branch(lines[i], i == guard);
-      append_line(lines[i], path, int(i) + 1, file);
+      const std::string_view directive = directive_of(lines[i]);
+      const bool is_position_lost = follow_branch(directive, i == guard);
+      append_line(lines[i], directive, path, int(i) + 1, file);
       if (is_position_lost) {
         append_position(int(i) + 2, file);
       }
@@ -172,9 +173,9 @@ class Preprocessor {
     branches_.resize(outer_branches);
   }
 
-  void append_line(std::string_view line, const std::string &path, int number, std::size_t file)
+  /** \a name: directive_of(line). */
+  void append_line(std::string_view line, std::string_view name, const std::string &path, int number, std::size_t file)
   {
-    const std::string_view name = directive_of(line);
     const std::string_view named = name == "include" ? included_name(line) : std::string_view();
     if (!named.empty()) {
       append_include(include_path_ ? include_path_(named, path) : std::string(named), path, number);
@@ -280,12 +281,12 @@ class Preprocessor {
   }
 
   /**
-   * Update the stack of open branches. \return true if \a line ends a branch that contains an include: if the compiler
-   * skips that branch, it also skips the `#line` directives in it, so the position must be set again
+   * Update the stack of open branches. \a name: the directive of a line, or empty. \return true if it ends a branch
+   * that contains an include: if the compiler skips that branch, it also skips the `#line` directives in it, so the
+   * position must be set again
    */
-  bool follow_branch(std::string_view line, bool is_include_guard)
+  bool follow_branch(std::string_view name, bool is_include_guard)
   {
-    const std::string_view name = directive_of(line);
     if (name.empty()) {
       return false;
     }

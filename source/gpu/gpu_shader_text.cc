@@ -6,6 +6,12 @@
 
 namespace gnomon::gpu {
 
+namespace {
+
+constexpr std::string_view white_space = " \t\r\n\v\f";
+
+}  // namespace
+
 bool is_word_character(char c)
 {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -13,7 +19,7 @@ bool is_word_character(char c)
 
 TextScanner &TextScanner::skip_space()
 {
-  rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n\v\f"), rest_.size()));
+  rest_.remove_prefix(std::min(rest_.find_first_not_of(white_space), rest_.size()));
   return *this;
 }
 
@@ -51,8 +57,10 @@ bool TextScanner::is_at_end() const
 
 std::string_view directive_of(std::string_view line)
 {
-  TextScanner scanner(line);
-  return scanner.skip_space().take("#") ? scanner.skip_space().take_word() : std::string_view();
+  // Asked of every line of every variant, and few lines are directives.
+  const std::size_t begin = line.find_first_not_of(white_space);
+  return begin < line.size() && line[begin] == '#' ? TextScanner(line.substr(begin + 1)).skip_space().take_word()
+                                                   : std::string_view();
 }
 
 }  // namespace gnomon::gpu

@@ -4,6 +4,9 @@
 
 #include "internal/shader_check_compilation.hh"
 #include "internal/shader_check_log.hh"
+#if GNOMON_GLSLANG_TREE
+#include "internal/shader_check_tree.hh"
+#endif
 #include "slots_shared.h"
 
 #include <fmt/ranges.h>
@@ -14,6 +17,76 @@
 namespace gnomon::shader_check {
 
 namespace {
+
+using Members = std::vector<gpu::ShaderInterface::Member>;
+
+/** Sets the sizes of the members of a block of \a block_bytes. \a members: also those of later elements of arrays. */
+void set_sizes(Members &members, std::uint32_t block_bytes)
+{
+  // Most blocks have this order.
+  if (!std::ranges::is_sorted(members, {}, &gpu::ShaderInterface::Member::offset_bytes)) {
+    std::ranges::stable_sort(members, {}, &gpu::ShaderInterface::Member::offset_bytes);
+  }
+  for (std::size_t i = 0; i < members.size(); i++) {
+    const std::uint32_t end = i + 1 == members.size() ? block_bytes : members[i + 1].offset_bytes;
+    members[i].size_bytes = end - members[i].offset_bytes;
+  }
+}
+
+#if GNOMON_GLSLANG_TREE
+
+/** glslang's list of all members would be made again for each use of one, which takes as long as the parser. */
+constexpr int reflection_options = EShReflectionSeparateBuffers | EShReflectionStrictArraySuffix;
+
+/** Adds \a type at \a offset_bytes of a block: of arrays of structs or arrays the first element, and a place without a
+ * name where the second begins. */
+void add_members(const glslang::TType &type, const std::string &name, int offset_bytes, Members &members)
+{
+  using glslang::TIntermediate;
+  const glslang::TQualifier &qualifier = type.getQualifier();
+  if (type.isArray() && (type.isStruct() || type.isArrayOfArrays())) {
+    int size_bytes = 0;
+    int stride_bytes = 0;
+    TIntermediate::getMemberAlignment(type, size_bytes, stride_bytes, qualifier.layoutPacking,
+                                      qualifier.layoutMatrix == glslang::ElmRowMajor);
+    add_members(glslang::TType(type, 0), name + "[0]", offset_bytes, members);
+    if (type.getOuterArraySize() > 1) {
+      members.push_back({"", std::uint32_t(offset_bytes + stride_bytes), 0});
+    }
+    return;
+  }
+  if (!type.isStruct()) {
+    members.push_back({name, std::uint32_t(offset_bytes), 0});
+    return;
+  }
+  int begin_bytes = 0;
+  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
+    if (entry.type->getQualifier().hasOffset()) {
+      begin_bytes = int(entry.type->getQualifier().layoutOffset);
+    }
+    int size_bytes = 0;
+    TIntermediate::updateOffset(type, *entry.type, begin_bytes, size_bytes);
+    const std::string field = text_of(entry.type->getFieldName());
+    add_members(*entry.type, name.empty() ? field : name + "." + field, offset_bytes + begin_bytes, members);
+    begin_bytes += size_bytes;
+  }
+}
+
+/** The members of \a block, by offset. */
+template <typename Get>
+Members members_of(const glslang::TObjectReflection &block, int /*block_index*/, int /*count*/, Get && /*variable*/)
+{
+  Members members;
+  add_members(*block.getType(), "", 0, members);
+  set_sizes(members, std::uint32_t(block.size));
+  std::erase_if(members, [](const gpu::ShaderInterface::Member &member) { return member.name.empty(); });
+  return members;
+}
+
+#else
+
+constexpr int reflection_options =
+    EShReflectionSeparateBuffers | EShReflectionAllBlockVariables | EShReflectionStrictArraySuffix;
 
 /** Whether \a name has an array index other than 0. */
 bool is_later_element(std::string_view name)
@@ -28,10 +101,9 @@ bool is_later_element(std::string_view name)
 
 /** The members of the block \a block_index, by offset. \a variable returns the reflected variable of an index. */
 template <typename Get>
-std::vector<gpu::ShaderInterface::Member> members_of(const glslang::TObjectReflection &block, int block_index,
-                                                     int count, Get &&variable)
+Members members_of(const glslang::TObjectReflection &block, int block_index, int count, Get &&variable)
 {
-  std::vector<gpu::ShaderInterface::Member> members;
+  Members members;
   const std::string prefix = block.name + ".";
   for (int i = 0; i < count; i++) {
     const glslang::TObjectReflection &member = variable(i);
@@ -40,17 +112,12 @@ std::vector<gpu::ShaderInterface::Member> members_of(const glslang::TObjectRefle
       members.push_back({member.name.substr(has_prefix ? prefix.size() : 0), std::uint32_t(member.offset), 0});
     }
   }
-  // glslang reports most blocks in this order.
-  if (!std::ranges::is_sorted(members, {}, &gpu::ShaderInterface::Member::offset_bytes)) {
-    std::ranges::stable_sort(members, {}, &gpu::ShaderInterface::Member::offset_bytes);
-  }
-  for (std::size_t i = 0; i < members.size(); i++) {
-    const std::uint32_t end = i + 1 == members.size() ? std::uint32_t(block.size) : members[i + 1].offset_bytes;
-    members[i].size_bytes = end - members[i].offset_bytes;
-  }
+  set_sizes(members, std::uint32_t(block.size));
   std::erase_if(members, [](const gpu::ShaderInterface::Member &member) { return is_later_element(member.name); });
   return members;
 }
+
+#endif
 
 /** glslang ends a block at its last member. std140 and drivers end it at the end of that member's row of 16 bytes. */
 std::uint32_t std140_size(std::uint32_t size_bytes)
@@ -92,14 +159,13 @@ void set_varyings(const Compilation &compilation, gpu::ShaderInterface &interfac
 
 gpu::ShaderInterface interface_of(glslang::TProgram &program)
 {
-  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables |
-                          EShReflectionStrictArraySuffix);
+  program.buildReflection(reflection_options);
   gpu::ShaderInterface interface;
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getUniformBlock(i);
-    std::vector<gpu::ShaderInterface::Member> members = members_of(block, i, variable_count, variable);
+    Members members = members_of(block, i, variable_count, variable);
     if (block.name == gpu::push_constant_block_name) {
       interface.push_constant_slot = block.getBinding();
       interface.push_constant_size_bytes = std140_size(std::uint32_t(block.size));

@@ -53,9 +53,9 @@ TEST_F(BenchTest, RecordCullAndImportCompareWithABaseline)
       EXPECT_GT(row["ratio_to_first"], 0.0) << row;
     }
   };
-  ASSERT_EQ(run("bench record --rounds 2 --json record.json").status, 0);
+  ASSERT_EQ(run("bench record --rounds 1 --json record.json").status, 0);
   check(json::parse(read("record.json"))["rows"], 4);
-  ASSERT_EQ(run("bench sync --rounds 2 --json sync.json").status, 0);
+  ASSERT_EQ(run("bench sync --rounds 1 --json sync.json").status, 0);
   check(json::parse(read("sync.json"))["rows"], 5);
   for (const std::string group : {"cull", "import"}) {
     ASSERT_EQ(run("bench " + group + " --rounds 1 --count-max 1000 --json counts.json").status, 0);

@@ -316,8 +316,9 @@ class JsonScanner {
     }
     const bool is_high = *code >= 0xD800U && *code <= 0xDBFFU;
     const bool is_low = *code >= 0xDC00U && *code <= 0xDFFFU;
-    const std::optional<unsigned> second = text_.substr(at_ + 6).starts_with("\\u") ? code_at(at_ + 8) : std::nullopt;
-    const bool is_pair = is_high && second && *second >= 0xDC00U && *second <= 0xDFFFU;
+    // 0, which is no half of a pair, where none follows.
+    const unsigned second = text_.substr(at_ + 6).starts_with("\\u") ? code_at(at_ + 8).value_or(0) : 0;
+    const bool is_pair = is_high && second >= 0xDC00U && second <= 0xDFFFU;
     if (is_low || (is_high && !is_pair)) {
       fail(at_, "'" + printable(text_.substr(at_, 6)) + "', half of a surrogate pair");
       return;

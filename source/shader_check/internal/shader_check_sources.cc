@@ -260,12 +260,9 @@ struct LineDirective {
   std::string_view file;
 };
 
-/** `#line LINE`, `#line LINE NUMBER` or `#line LINE "NAME"`; empty for other lines. */
+/** Of `#line LINE`, `#line LINE NUMBER` or `#line LINE "NAME"`; empty without a number. */
 std::optional<LineDirective> line_directive(std::string_view text)
 {
-  if (gpu::directive_of(text) != "line") {
-    return std::nullopt;
-  }
   gpu::TextScanner scanner(text);
   scanner.skip_space().take("#");
   scanner.skip_space().take("line");
@@ -279,12 +276,9 @@ std::optional<LineDirective> line_directive(std::string_view text)
   return directive;
 }
 
-/** The number in a `#version` directive; empty for other lines. */
+/** The number in a `#version` directive. */
 std::optional<int> version_of(std::string_view text)
 {
-  if (gpu::directive_of(text) != "version") {
-    return std::nullopt;
-  }
   gpu::TextScanner scanner(text);
   scanner.skip_space().take("#");
   scanner.skip_space().take("version");
@@ -319,17 +313,20 @@ void SourceLines::read(CheckTarget target)
     for (std::string_view rest = file.text; !rest.empty();) {
       const std::string_view text = rest.substr(0, rest.find('\n'));
       rest.remove_prefix(std::min(text.size() + 1, rest.size()));
-      if (const std::optional<int> version = is_in_comment ? std::nullopt : version_of(text)) {
+      const std::string_view directive = is_in_comment ? std::string_view() : gpu::directive_of(text);
+      if (const std::optional<int> version = directive == "version" ? version_of(text) : std::nullopt) {
         line_sets_next = *version == 100 || *version >= 300;
       }
-      if (const std::optional<LineDirective> set = is_in_comment ? std::nullopt : line_directive(text)) {
+      if (const std::optional<LineDirective> set = directive == "line" ? line_directive(text) : std::nullopt) {
         const SourcePosition known = set->file.empty() ? position : source_.position(set->file, 1, 0);
         position.file = known.file;
         position.line = set->line + (line_sets_next || set->line == std::numeric_limits<int>::max() ? 0 : 1);
         continue;
       }
-      by_position_.try_emplace(key_of(position), lines_.size());
-      lines_.push_back({position, text, without_comments(text, is_in_comment)});
+      const bool may_have_comment = is_in_comment || text.find('/') != std::string_view::npos;
+      lines_.push_back(
+          {position, text,
+           may_have_comment ? std::string_view(codes_.emplace_back(without_comments(text, is_in_comment))) : text});
       // A `#line` may have any number.
       position.line += position.line < std::numeric_limits<int>::max() ? 1 : 0;
     }
@@ -376,10 +373,21 @@ bool SourceLines::is_excused(SourcePosition position, std::string_view rule) con
                                     std::string_view(", \t\r.;:").find(rest[rule.size()]) != std::string_view::npos);
 }
 
+std::size_t SourceLines::index_of(SourcePosition position) const
+{
+  if (by_position_.empty()) {
+    for (std::size_t i = 0; i < lines_.size(); i++) {
+      by_position_.try_emplace(key_of(lines_[i].position), i);
+    }
+  }
+  const auto found = by_position_.find(key_of(position));
+  return found == by_position_.end() ? lines_.size() : found->second;
+}
+
 std::string_view SourceLines::line(SourcePosition position) const
 {
-  const auto found = by_position_.find(key_of(position));
-  return found == by_position_.end() ? std::string_view() : lines_[found->second].text;
+  const std::size_t index = index_of(position);
+  return index == lines_.size() ? std::string_view() : lines_[index].text;
 }
 
 std::optional<SourcePosition> SourceLines::find_name(std::string_view name, std::string_view keyword) const
@@ -415,12 +423,11 @@ std::optional<SourcePosition> SourceLines::find_name(std::string_view name, std:
 
 SourcePosition SourceLines::find_member(SourcePosition owner, std::string_view name) const
 {
-  const auto begin = by_position_.find(key_of(owner));
-  for (std::size_t i = begin == by_position_.end() ? lines_.size() : begin->second; i < lines_.size(); i++) {
+  for (std::size_t i = index_of(owner); i < lines_.size(); i++) {
     if (find_word(lines_[i].code, name) != std::string_view::npos) {
       return lines_[i].position;
     }
-    if (lines_[i].code.find('}') != std::string::npos) {
+    if (lines_[i].code.find('}') != std::string_view::npos) {
       break;
     }
   }

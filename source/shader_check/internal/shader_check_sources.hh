@@ -5,6 +5,7 @@
 
 #include <glslang/Public/ShaderLang.h>
 
+#include <list>
 #include <memory>
 #include <string_view>
 #include <unordered_map>
@@ -146,17 +147,21 @@ class SourceLines {
   struct Line {
     SourcePosition position;
     std::string_view text;
-    /** Without comments. */
-    std::string code;
+    /** Without comments: `text`, or a part of codes_. */
+    std::string_view code;
   };
+
+  /** Index in lines_ of the first line at \a position; lines_.size() if there is none. */
+  [[nodiscard]] std::size_t index_of(SourcePosition position) const;
 
   StageSource &source_;
   void read_levels(const StageSource::File &file);
 
   std::vector<Line> lines_;
+  std::list<std::string> codes_;
   std::map<std::size_t, RuleLevels> levels_;
-  /** Indices in lines_ by file and line. */
-  std::unordered_map<std::uint64_t, std::size_t> by_position_;
+  /** Indices in lines_ by file and line. Made when the first is sought. */
+  mutable std::unordered_map<std::uint64_t, std::size_t> by_position_;
   /** Indices in lines_ by word. Made when the first word is sought. */
   mutable std::unordered_map<std::string_view, std::vector<std::size_t>> by_word_;
 };
