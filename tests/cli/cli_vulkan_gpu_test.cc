@@ -83,6 +83,23 @@ TEST_F(CliVulkanTest, AProgramIsNotCompiledAgainInWarmFrames)
   }
 }
 
+// Devices lack layers in vertex shaders, geometry shaders, or both.
+TEST_F(CliVulkanTest, EachWayOfDrawingLayersGivesTheSamePictureAndExplainNamesIt)
+{
+  const std::map<std::string, std::string> programs{
+      {"layered", "eevee_shadow_layered"}, {"geometry", "eevee_shadow_geometry"}, {"six", "eevee_shadow"}};
+  for (const auto &[way, program] : programs) {
+    const Finished finished =
+        run("render " + example("plaza") + " --size 64x36 --samples 1 --shadow-size 128 --backend vulkan --explain " +
+            "--cube-pass " + way + " -o " + way + ".exr");
+    ASSERT_EQ(finished.status, 0) << finished.err;
+    for (const auto &[other, other_program] : programs) {
+      EXPECT_EQ(finished.out.find("-+ " + other_program + " ") != std::string::npos, other == way) << finished.out;
+    }
+    EXPECT_EQ(rms_difference("geometry.exr", way + ".exr"), 0.0) << way;
+  }
+}
+
 TEST_F(CliVulkanTest, AutoTakesItWhereOpenGlDoesNotStartAndSaysWhy)
 {
   const Finished finished =
@@ -113,12 +130,16 @@ TEST_F(CliVulkanTest, OnACoarseGridOfVerticesPlanesDoNotShadowThemselves)
   }
   EXPECT_EQ(device->limits().subpixel_bits, 4);
   for (const std::string scene : {"spots", "room", "plaza"}) {
+    std::string out;
     for (const std::string backend : {"gl", "vulkan"}) {
-      const Finished finished = run(
-          "render " + example(scene) + " --size 64x36 --samples 16 --backend " + backend + " -o " + backend + ".exr",
-          program_with("VK_DRIVER_FILES='" + test::swiftshader_driver() + "'"));
+      const Finished finished = run("render " + example(scene) + " --size 64x36 --samples 16 --explain --backend " +
+                                        backend + " -o " + backend + ".exr",
+                                    program_with("VK_DRIVER_FILES='" + test::swiftshader_driver() + "'"));
       ASSERT_EQ(finished.status, 0) << finished.err;
+      out = finished.out;
     }
+    // It has neither layers in vertex shaders nor geometry shaders.
+    EXPECT_NE(out.find("-+ eevee_shadow "), std::string::npos) << out;
     // Edges are moved by up to half of a cell: measured 0.0013 to 0.0023.
     EXPECT_LE(rms_difference("gl.exr", "vulkan.exr"), 0.005) << scene;
   }
