@@ -27,7 +27,8 @@ vec3 gbuffer_position(vec2 ndc, float depth)
 /**
  * The gbuffer_depth() at which the ray of the pixel meets the plane of the triangle. \a position_ws: of the surface. Where vertices are
  * moved to a coarse grid, it is of a place beside the pixel's centre, and a position from its depth would be off the plane, which would then
- * shadow itself. \a normal_ws: of the triangle.
+ * shadow itself. \a normal_ws: of the triangle. SwiftShader's places are up to 1.4 pixels beside the centre, on triangles that are clipped.
+ * The bound, the change of the depth over two pixels, keeps rays along the plane from depths far off the surface.
  */
 float gbuffer_depth_on_plane(vec3 position_ws, vec3 normal_ws)
 {
@@ -35,6 +36,7 @@ float gbuffer_depth_on_plane(vec3 position_ws, vec3 normal_ws)
   float depth = gbuffer_depth(position_ws);
   float slope = dot((view.is_perspective != 0 ? gbuffer_place(ndc) : vec3(0.0)) - view.back_ws, normal_ws);
   float off_plane = dot(position_ws - gbuffer_position(ndc, depth), normal_ws);
-  return depth + (abs(slope) > 1e-6 ? off_plane / slope : 0.0);
+  float bound = 2.0 * fwidth(depth);
+  return depth + (abs(slope) > 1e-6 ? clamp(off_plane / slope, -bound, bound) : 0.0);
 }
 #endif

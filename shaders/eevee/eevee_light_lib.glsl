@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Direct lighting of a surface.
+#include "draw/draw_branch_lib.glsl"
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 #ifdef USE_SPECULAR
@@ -391,7 +392,7 @@ vec3 direct_light(MaterialData material, Surface surface)
   layers.coat_world = world_shading;
   vec3 base = world_light(material, surface, layers.base_lobe.bent_normal_ws);
   // The lobe of sheen is wide: its mean radiance is that of a cosine around the normal.
-  bool is_sampled = world.is_sampled != 0;
+  bool is_sampled = branch_value(world.is_sampled) != 0;
   vec3 mean = is_sampled ? vec3(0.0) : material.occlusion * world_diffuse(world_parts(surface), surface);
   vec3 sum = layered(base, layers.sheen_albedo * mean, coat);
 #elif defined(USE_WORLD)
@@ -404,7 +405,7 @@ vec3 direct_light(MaterialData material, Surface surface)
   int count = reaching.count;
   int cube_count = reaching.cube_count;
 #else
-  int count = min(light_data.light_count, LIGHT_MAX);
+  int count = branch_value(min(light_data.light_count, LIGHT_MAX));
   int cube_count = min(light_data.cube_light_count, count);
 #endif
 #if defined(USE_SHADOW_CUBE) && defined(USE_SHADOW_MAP)

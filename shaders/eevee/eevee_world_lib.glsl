@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light of the world without its suns, which are lights of light_block.
+#include "draw/draw_branch_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_light_shared.h"
 #include "shared/eevee_world_shared.h"
@@ -30,7 +31,7 @@ WorldParts world_parts(Surface surface)
   if (WORLD_OCCLUSION == 0) {
     return WorldParts(vec3(1.0), vec3(1.0));
   }
-  bool has_probes = world.probe_count.x > 0.0;
+  bool has_probes = branch_value(int(world.probe_count.x)) > 0;
   vec3 last = max(world.probe_count.xyz - 1.0, 0.0);
   // In cells between probes.
   vec3 place = surface.position_ws * world.probe_scale.xyz + world.probe_offset.xyz;
@@ -151,7 +152,7 @@ vec3 world_light(MaterialData material, Surface surface, vec3 mirror_ws)
 #ifdef USE_SPECULAR
   vec3 albedo = albedo_of(surface, material.alpha, material.specular_f0, material.specular_f90);
 #endif
-  if (world.is_sampled != 0) {
+  if (branch_value(world.is_sampled) != 0) {
 #ifdef USE_SPECULAR
     world_shading.level_share = 1.0 - smoothstep(0.7, 1.0, material.alpha / world.alpha_sampled);
     world_shading.mirrored = vec3(0.0);

@@ -430,6 +430,55 @@ void main()
   return read_as<glm::vec4>(device, third).front();
 }
 
+/** A barrier between any two writes would be one for each part of a mesh that changes. */
+TEST_F(VulkanFailure, OnlyWritesOfTheSameBytesHaveABarrierBetweenThem)
+{
+  const Texture picture = device->create_texture({.name = "picture", .format = Format::RGBA32F});
+  const Framebuffer framebuffer = device->create_framebuffer({"picture", {{&picture}}, {}});
+  constexpr std::size_t part_count = 8;
+  const Buffer parts = device->create_buffer({.name = "parts", .size_bytes = part_count * sizeof(glm::vec4)});
+  const Shader shader = test::make_shader(*device, "sum of parts", test::CLIP_SPACE_VERT, R"(
+layout(binding = 1, std140) uniform block_of_parts { vec4 parts[8]; };
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(0);
+  for (int i = 0; i < 8; i++) {
+    result += parts[i];
+  }
+})");
+  const Batch full = test::full_triangle(*device, 0.5F);
+  CommandList list;
+  list.begin_pass("sum", framebuffer, {.color_load = LoadAction::DontCare});
+  list.set_shader(shader.id());
+  list.set_state(State::WriteColor);
+  list.bind_uniform(1, {.buffer = parts.id()});
+  test::append_draw(list, full);
+  list.end_pass();
+  device->update(parts, std::array<glm::vec4, part_count>{});
+  device->submit(list);
+  WeakBarrier::begin(context->vk, -1);
+  const auto write = [&](std::size_t part, float value) {
+    const glm::vec4 texel(value);
+    device->update(parts, part * sizeof(texel), std::as_bytes(std::span(&texel, 1)));
+  };
+  // Each part once, in no order: one barrier, after the draw.
+  for (std::size_t i = 0; i < part_count; i++) {
+    write(i * 3 % part_count, 1);
+  }
+  EXPECT_EQ(WeakBarrier::count, 1);
+  write(2, 5);
+  EXPECT_EQ(WeakBarrier::count, 2);
+  write(3, 5);
+  EXPECT_EQ(WeakBarrier::count, 2);
+  // The end of one part and the begin of the next.
+  const std::array<glm::vec2, 2> across{glm::vec2(7), glm::vec2(7)};
+  device->update(parts, 2 * sizeof(glm::vec4) + sizeof(glm::vec2), std::as_bytes(std::span(across)));
+  EXPECT_EQ(WeakBarrier::count, 3);
+  device->submit(list);
+  EXPECT_EQ(read_as<glm::vec4>(*device, picture).front(), glm::vec4(18, 18, 18, 18));
+}
+
 /** Each barrier is needed, and the checks of synchronisation, with which the driver tests run, find that it lacks. */
 TEST_F(VulkanFailure, WithoutAnyOneOfItsBarriersADrawIsAnError)
 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "draw_view_shared.h"
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
 #include "shared_functions.hh"
@@ -112,6 +113,59 @@ TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
     }
   }
   RecordProperty("epsilons_from_cpp", fmt::format("{:.3g}", difference));
+}
+
+class CoarseGridGpu : public GpuDeviceTest {};
+
+/**
+ * An orthographic view along -z, with pixels of 1 m, of a plane whose depth is 50 x. Interpolation has the place of a
+ * pixel to the right of its centre.
+ */
+TEST_F(CoarseGridGpu, DepthsAreOnThePlaneAndNeverMoreThanTwoPixelsFromTheSurface)
+{
+  constexpr int size_px = 8;
+  const ShaderTexts texts{{{"frag", R"(#version 450 core
+#define HAS_COARSE_GRID
+#include "eevee/eevee_gbuffer_lib.glsl"
+layout(location = 0) out vec4 result;
+float depth_at(float right, vec3 normal)
+{
+  float x = gl_FragCoord.x - 4.0 + right;
+  return gbuffer_depth_on_plane(vec3(x, gl_FragCoord.y - 4.0, -50.0 * x), normalize(normal));
+}
+void main()
+{
+  vec3 normal = vec3(50.0, 0.0, 1.0);
+  float expected = 50.0 * (gl_FragCoord.x - 4.0);
+  // A normal that is almost perpendicular to the ray puts the plane 10 km away.
+  result = vec4(depth_at(0.03, normal) - expected, depth_at(1.4, normal) - expected, depth_at(1.0, vec3(1.0, 0.0, 1e-4)) - expected, 1);
+})"}}};
+  const gpu::Shader shader = device->create_shader({"coarse grid", "draw/draw_fullscreen_vert.glsl", "", "frag", {}},
+                                                   texts.files(), shader_check::reflect);
+  shared::ViewData view{};
+  view.back_ws = {0, 0, 1};
+  view.place_right = {size_px / 2, 0, 0, 2.0F / size_px};
+  view.place_up = {0, size_px / 2, 0, 2.0F / size_px};
+  const gpu::Buffer block = device->create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(view)});
+  device->update(block, view);
+  const gpu::Texture picture =
+      device->create_texture({.name = "results", .format = gpu::Format::RGBA32F, .width = size_px, .height = size_px});
+  const gpu::Framebuffer framebuffer = device->create_framebuffer({"results", {{&picture}}, {}});
+  gpu::CommandList list;
+  list.begin_pass("evaluate", framebuffer, {});
+  list.set_shader(shader.id());
+  list.set_state(gpu::State::WriteColor);
+  list.bind_uniform(shader.interface().find(gpu::BindingKind::UniformBlock, "view_block")->slot,
+                    {.buffer = block.id()});
+  list.draw_procedural(3, 1);
+  list.end_pass();
+  device->submit(list);
+  for (const glm::vec4 &texel : gpu::read_as<glm::vec4>(*device, picture)) {
+    EXPECT_NEAR(texel.x, 0.0F, 1e-3F);
+    EXPECT_NEAR(texel.y, 0.0F, 1e-3F);
+    // The place is one pixel to the right, and the bound is twice the change of the depth from pixel to pixel.
+    EXPECT_NEAR(texel.z, 50.0F - 2.0F * 50.0F, 1e-3F);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, SharedFunctionGpu, testing::Range(std::size_t(0), sweeps().size()),

@@ -122,8 +122,8 @@ void VulkanDevice::create_dummies()
   view.format = VK_FORMAT_R8G8B8A8_UNORM;
   view.range = VK_WHOLE_SIZE;
   context_->check(context_->vk.vkCreateBufferView(context_->device, &view, nullptr, &dummies_.buffer_view), what);
-  barriers_.before_copy(VK_NULL_HANDLE, dummies_.buffer.handle);
-  barriers_.before_copy(VK_NULL_HANDLE, dummies_.white.handle);
+  barriers_.before_copy(VK_NULL_HANDLE, {dummies_.buffer.handle, 0, dummies_.buffer.size_bytes});
+  barriers_.before_copy(VK_NULL_HANDLE, {dummies_.white.handle, 0, dummies_.white.size_bytes});
   VkCommandBuffer commands = submissions_.commands();
   barriers_.record(commands);
   context_->vk.vkCmdFillBuffer(commands, dummies_.buffer.handle, 0, VK_WHOLE_SIZE, 0);

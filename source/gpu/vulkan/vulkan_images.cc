@@ -131,11 +131,35 @@ void VulkanBarriers::add(VkPipelineStageFlags2 from, VkAccessFlags2 written, VkP
   buffers_.dstAccessMask |= accessed;
 }
 
-void VulkanBarriers::before_copy(VkBuffer read, VkBuffer written)
+bool VulkanBarriers::is_written(const VulkanBufferRange &range) const
+{
+  const auto ranges = written_.find(range.buffer);
+  if (ranges == written_.end()) {
+    return false;
+  }
+  const auto next = ranges->second.upper_bound(range.offset_bytes);
+  return (next != ranges->second.begin() && std::prev(next)->second > range.offset_bytes) ||
+         (next != ranges->second.end() && next->first < range.offset_bytes + range.size_bytes);
+}
+
+void VulkanBarriers::note_written(const VulkanBufferRange &range)
+{
+  std::map<VkDeviceSize, VkDeviceSize> &ranges = written_[range.buffer];
+  const auto next = ranges.upper_bound(range.offset_bytes);
+  const VkDeviceSize end = range.offset_bytes + range.size_bytes;
+  if (next != ranges.begin() && std::prev(next)->second == range.offset_bytes) {
+    std::prev(next)->second = end;
+  }
+  else {
+    ranges.emplace_hint(next, range.offset_bytes, end);
+  }
+}
+
+void VulkanBarriers::before_copy(VkBuffer read, const VulkanBufferRange &written)
 {
   const bool is_read_written = read != VK_NULL_HANDLE && written_.contains(read);
   const bool is_written_used =
-      written != VK_NULL_HANDLE && (has_draws_ || written_.contains(written) || read_.contains(written));
+      written.buffer != VK_NULL_HANDLE && (has_draws_ || is_written(written) || read_.contains(written.buffer));
   if (is_read_written || is_written_used) {
     add(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | (has_draws_ ? VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT : 0),
         VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
@@ -147,8 +171,8 @@ void VulkanBarriers::before_copy(VkBuffer read, VkBuffer written)
   if (read != VK_NULL_HANDLE) {
     read_.insert(read);
   }
-  if (written != VK_NULL_HANDLE) {
-    written_.insert(written);
+  if (written.buffer != VK_NULL_HANDLE) {
+    note_written(written);
     has_written_for_draws_ = true;
   }
 }

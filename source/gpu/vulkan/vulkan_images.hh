@@ -6,6 +6,7 @@
 #include "gpu_framebuffer.hh"
 
 #include <array>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -74,6 +75,13 @@ void destroy_image(VulkanContext &context, VulkanMemory &memory, const VulkanIma
 [[nodiscard]] VkImageView make_view(VulkanContext &context, std::string_view what, const VulkanImage &image,
                                     VkFormat format, VkImageViewType type, const VkImageSubresourceRange &range);
 
+struct VulkanBufferRange {
+  /** VK_NULL_HANDLE: no buffer of the device. */
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceSize offset_bytes = 0;
+  VkDeviceSize size_bytes = 0;
+};
+
 /**
  * Orders accesses to images and buffers. Barriers are gathered by the functions before_… and recorded as one command
  * before the accesses.
@@ -84,7 +92,7 @@ class VulkanBarriers {
 
   void before_use(VulkanImage &image, const ImageUse &next);
   /** Before a copy that reads \a read and writes \a written; VK_NULL_HANDLE: no buffer of the device. */
-  void before_copy(VkBuffer read, VkBuffer written);
+  void before_copy(VkBuffer read, const VulkanBufferRange &written);
   /** Before draws, which read any buffers. */
   void before_draws();
   /** Records what was gathered. */
@@ -93,12 +101,18 @@ class VulkanBarriers {
  private:
   void add(VkPipelineStageFlags2 from, VkAccessFlags2 written, VkPipelineStageFlags2 to, VkAccessFlags2 accessed);
 
+  /** The range was written since the last barrier between copies. */
+  [[nodiscard]] bool is_written(const VulkanBufferRange &range) const;
+  void note_written(const VulkanBufferRange &range);
+
   const VulkanContext &context_;
   std::vector<VkImageMemoryBarrier2> images_;
   VkMemoryBarrier2 buffers_{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, 0, 0, 0, 0};
   // Since the last barrier between copies:
   std::set<VkBuffer> read_;
-  std::set<VkBuffer> written_;
+  /** The ends of ranges by their begins. They do not overlap, so that many parts of a buffer are written without
+   * barriers. */
+  std::map<VkBuffer, std::map<VkDeviceSize, VkDeviceSize>> written_;
   /** Draws since the last barrier before a copy. */
   bool has_draws_ = false;
   /** Buffers were written since the last barrier before draws. */

@@ -367,7 +367,7 @@ void VulkanDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
                     i == index_pool ? "indices" : std::string(to_string(VertexStream(i))));
     const VulkanBuffer old = std::exchange(pools_[i], grown[i]);
     if (old.handle != VK_NULL_HANDLE) {
-      barriers_.before_copy(old.handle, pools_[i].handle);
+      barriers_.before_copy(old.handle, {pools_[i].handle, 0, old.size_bytes});
       barriers_.record(commands);
       const VkBufferCopy region{0, 0, old.size_bytes};
       context_->vk.vkCmdCopyBuffer(commands, old.handle, pools_[i].handle, 1, &region);
@@ -514,7 +514,7 @@ void VulkanDevice::write(const VulkanBuffer &buffer, VkDeviceSize offset_bytes, 
   }
   VkCommandBuffer commands = submissions_.commands();
   const VulkanStream::Place place = stream_.write(bytes, texel_alignment);
-  barriers_.before_copy(VK_NULL_HANDLE, buffer.handle);
+  barriers_.before_copy(VK_NULL_HANDLE, {buffer.handle, offset_bytes, bytes.size()});
   barriers_.record(commands);
   const VkBufferCopy region{place.offset_bytes, offset_bytes, bytes.size()};
   context_->vk.vkCmdCopyBuffer(commands, place.buffer, buffer.handle, 1, &region);
@@ -634,7 +634,7 @@ void VulkanDevice::texture_read(ResourceId id, int layer, std::span<std::byte> t
       destroy);
   VkCommandBuffer commands = submissions_.commands();
   if (texture.desc.kind == TextureKind::Buffer) {
-    barriers_.before_copy(texture.buffer.handle, VK_NULL_HANDLE);
+    barriers_.before_copy(texture.buffer.handle, {});
     barriers_.record(commands);
     const VkBufferCopy region{0, 0, texels.size()};
     context_->vk.vkCmdCopyBuffer(commands, texture.buffer.handle, buffer->handle, 1, &region);
