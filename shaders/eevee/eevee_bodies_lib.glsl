@@ -46,8 +46,10 @@ struct BodyHit {
   bool is_front;
 };
 
-BodyHit trace_bodies(Ray ray, float start_m)
+BodyHit trace_bodies(Ray ray)
 {
+  // The rounding of the origin.
+  float start_m = 1e-5 * (length(ray.origin - view.position_ws) + length(ray.origin));
   int node_count = int(texelFetch(bodies, 1).x);
   int triangles = BODY_HEAD_TEXELS + BODY_NODE_TEXELS * node_count;
   float nearest = NO_HIT;
@@ -115,27 +117,53 @@ BodyHit trace_bodies(Ray ray, float start_m)
 /** Where a ray meets what is in the picture. */
 struct PictureHit {
   bool is_met;
-  /** In [0, 1]. */
+  /** In [0, 1]. Without a hit, the last place on the ray that the picture shows, or a negative value if it shows the end. */
   vec2 texco;
   float distance_m;
 };
 
+/** The way of a ray over the picture: the place \a start + part * \a way, in normalized device coordinates. */
+struct PictureRay {
+  vec3 start;
+  vec3 way;
+  /** Distance = part * from_w / (reach - part * along_w). */
+  float from_w;
+  float along_w;
+  float reach;
+};
+
+float distance_at(PictureRay ray, float part)
+{
+  return part * ray.from_w / max(ray.reach - part * ray.along_w, 1e-20);
+}
+
+vec2 texco_at(PictureRay ray, float part)
+{
+  return 0.5 * (ray.start.xy + part * ray.way.xy) + 0.5;
+}
+
+/** Depth of what is seen at a part of the way. */
+float seen_at(PictureRay ray, float part)
+{
+  ivec2 size = textureSize(behind_depth, 0);
+  return texelFetch(behind_depth, clamp(ivec2(texco_at(ray, part) * vec2(size)), ivec2(0), size - 1), 0).r;
+}
+
 /**
- * Follow a ray over the picture up to \a length_m, and find where it goes from before an opaque surface to behind it. \a start: the part of
- * the first step that is left out, in [0, 1).
+ * Follow a ray over the picture up to \a length_m, and find where it goes from before an opaque surface to behind it. \a offset: the
+ * part of the first step that is left out, in [0, 1).
  */
-PictureHit march_behind(Ray ray, float length_m, float start)
+PictureHit march_behind(Ray ray, float length_m, float offset)
 {
   const int step_max = 64;
   const float step_px = 3.0;
-  vec2 size = vec2(textureSize(behind_depth, 0));
   vec4 from = view.clip_from_world * vec4(ray.origin, 1.0);
   vec4 along = view.clip_from_world * vec4(ray.direction, 0.0);
   vec4 ahead = view.clip_from_world * vec4(-view.back_ws, 0.0);
-  PictureHit result = PictureHit(false, vec2(0.0), 0.0);
+  PictureHit miss = PictureHit(false, vec2(-1.0), 0.0);
   bool is_perspective = view.is_perspective != 0;
   if (from.w <= 0.0) {
-    return result;
+    return miss;
   }
   // A perspective ray ends before the plane of the eye, or in its vanishing point; another outside of the picture.
   float end_m = length_m;
@@ -145,56 +173,73 @@ PictureHit march_behind(Ray ray, float length_m, float start)
   if (!is_perspective) {
     end_m = min(end_m, 4.0 / max(max(abs(along.x), abs(along.y)), max(abs(along.z), 1e-20)));
   }
-  vec4 to = end_m < 0.5 * NO_HIT ? from + end_m * along : along;
-  vec3 a = from.xyz / from.w;
-  vec3 way = to.xyz / max(to.w, 1e-20) - a;
+  bool is_endless = end_m >= 0.5 * NO_HIT;
+  vec4 to = is_endless ? along : from + end_m * along;
+  PictureRay path;
+  path.start = from.xyz / from.w;
+  path.way = to.xyz / max(to.w, 1e-20) - path.start;
+  path.from_w = from.w;
+  path.along_w = along.w;
+  path.reach = is_endless ? along.w : to.w / end_m;
   // The part within the picture and before the far end.
-  vec3 limit = vec3(way.x > 0.0 ? 1.0 - a.x : 1.0 + a.x, way.y > 0.0 ? 1.0 - a.y : 1.0 + a.y, way.z > 0.0 ? 1.0 - a.z : a.z);
-  vec3 parts = limit / max(abs(way), vec3(1e-20));
+  vec3 room = mix(1.0 + path.start, 1.0 - path.start, greaterThan(path.way, vec3(0.0)));
+  room.z = path.way.z > 0.0 ? 1.0 - path.start.z : path.start.z;
+  vec3 parts = room / max(abs(path.way), vec3(1e-20));
   float whole = clamp(min(min(parts.x, parts.y), min(parts.z, 1.0)), 0.0, 1.0);
-  float length_px = length(way.xy * whole * 0.5 * size);
+  float length_px = length(path.way.xy * whole * 0.5 * vec2(textureSize(behind_depth, 0)));
   int steps = clamp(int(ceil(length_px / step_px)), 1, step_max);
-  // Perspective: depth = slope / (z - z of infinity). Orthographic: z changes by ahead.z a metre.
-  float slope = from.z - ahead.z * from.w;
+  // Metres along the view axis: perspective scale / (z - z of infinity), orthographic z / change of z in a metre.
+  float scale = from.z - ahead.z * from.w;
   float last = 0.0;
-  bool was_before = true;
-  for (int i = 0; i < steps; i++) {
-    float part = whole * min((float(i) + 1.0 - start + (i == steps - 1 ? start : 0.0)) / float(steps), 1.0);
-    vec3 place = a + part * way;
-    ivec2 pixel = clamp(ivec2((0.5 * place.xy + 0.5) * size), ivec2(0), ivec2(size) - 1);
-    bool is_before = place.z >= texelFetch(behind_depth, pixel, 0).r;
-    if (was_before && !is_before) {
-      float low = last;
-      float high = part;
-      for (int k = 0; k < 6; k++) {
-        float middle = 0.5 * (low + high);
-        vec3 point = a + middle * way;
-        ivec2 at = clamp(ivec2((0.5 * point.xy + 0.5) * size), ivec2(0), ivec2(size) - 1);
-        if (point.z >= texelFetch(behind_depth, at, 0).r) {
-          low = middle;
-        }
-        else {
-          high = middle;
-        }
+  // What is before the ray's depth is that much nearer. Depths of planes are linear over the picture, and so are those of the ray.
+  float gap = path.start.z - seen_at(path, 0.0);
+  float closing = 0.0;
+  float hidden_m = NO_HIT;
+  bool is_guess = false;
+  for (int i = 1; i <= steps; i++) {
+    float part = whole * (i == steps ? 1.0 : (float(i) - offset) / float(steps));
+    float seen = seen_at(path, part);
+    float next_gap = path.start.z + part * path.way.z - seen;
+    if (next_gap >= 0.0) {
+      closing = (gap - next_gap) / max(part - last, 1e-20);
+      // The plane of what was seen last meets the ray where the picture shows something else.
+      is_guess = seen > 0.0 && closing > 0.0 && part + next_gap / closing < 1.0;
+      gap = next_gap;
+      last = part;
+      miss.texco = vec2(-1.0);
+      hidden_m = NO_HIT;
+      continue;
+    }
+    float low = last;
+    float high = part;
+    for (int k = 0; k < 6 && hidden_m == NO_HIT; k++) {
+      float middle = 0.5 * (low + high);
+      if (path.start.z + middle * path.way.z >= seen_at(path, middle)) {
+        low = middle;
       }
-      vec3 point = a + high * way;
-      vec2 texco = 0.5 * point.xy + 0.5;
-      ivec2 at = clamp(ivec2(texco * size), ivec2(0), ivec2(size) - 1);
-      float z = texelFetch(behind_depth, at, 0).r;
-      float ray_m = is_perspective ? slope / max(point.z - ahead.z, 1e-20) : point.z / ahead.z;
-      float seen_m = is_perspective ? slope / max(z - ahead.z, 1e-20) : z / ahead.z;
-      float last_m = is_perspective ? slope / max(a.z + low * way.z - ahead.z, 1e-20) : (a.z + low * way.z) / ahead.z;
-      // A ray that is farther behind passes behind the body that is seen there.
-      float thickness_m = 0.02 * abs(is_perspective ? seen_m : 0.1 / ahead.z) + 2.0 * abs(ray_m - last_m);
-      if (abs(ray_m - seen_m) <= thickness_m) {
-        float reach = end_m < 0.5 * NO_HIT ? to.w / end_m : along.w;
-        return PictureHit(true, texco, high * from.w / max(reach - high * along.w, 1e-20));
+      else {
+        high = middle;
       }
     }
-    was_before = is_before;
-    last = part;
+    vec3 depths = vec3(path.start.z + vec2(high, low) * path.way.z, seen_at(path, high));
+    vec3 depths_m = is_perspective ? scale / max(depths - ahead.z, vec3(1e-20)) : depths / ahead.z;
+    // A ray that is farther behind passes behind the body that is seen there.
+    float thickness_m = 0.02 * (is_perspective ? depths_m.z : 0.1 / abs(ahead.z)) + 2.0 * abs(depths_m.x - depths_m.y);
+    bool is_met = hidden_m == NO_HIT && abs(depths_m.x - depths_m.z) <= thickness_m;
+    // What is seen now is farther than the place where the ray was hidden, so that it has met it before.
+    if (is_met || depths_m.z > hidden_m) {
+      return PictureHit(true, texco_at(path, high), distance_at(path, high));
+    }
+    if (hidden_m == NO_HIT) {
+      hidden_m = depths_m.x;
+      miss.texco = texco_at(path, last);
+    }
   }
-  return result;
+  // Behind a body, and beyond the edge of the picture, the plane of what was seen last goes on.
+  if (is_guess && (hidden_m < NO_HIT || whole < 1.0)) {
+    return PictureHit(true, texco_at(path, last), distance_at(path, min(last + gap / closing, 1.0)));
+  }
+  return miss;
 }
 
 /** Two numbers in [0, 1) for the pixel, the sample and \a number. */

@@ -80,6 +80,9 @@ void main()
   sum += passed * transmission.behind.rgb;
   // 1 - what the surface passes of what is behind a transparent picture, as the mean of red, green and blue.
   alpha = 1.0 - dot(passed, vec3(1.0 / 3.0)) * (1.0 - transmission.behind.a);
+#    ifdef USE_WORLD
+  mirror_seen = mirror_part(surface, roughness_behind);
+#    endif
 #  endif
   sum += direct_light(material, surface);
 #endif

@@ -102,9 +102,7 @@ vec4 radiance_behind(inout Way way, float slab_m, float level, bool has_samples)
   float seen_depth = texelFetch(behind_depth, ivec2(gl_FragCoord.xy), 0).r;
   float start = has_samples ? 0.9 * random_pair(0u).y : 0.0;
   for (int i = 1; i <= BODY_SURFACES_MAX; i++) {
-    vec3 back = way.ray.origin - view.position_ws;
-    float start_m = 1e-5 * (length(back) + length(way.ray.origin));
-    BodyHit hit = trace_bodies(way.ray, start_m);
+    BodyHit hit = trace_bodies(way.ray);
     bool is_slab = way.is_inside && (hit.distance_m >= NO_HIT || hit.is_front);
     vec3 absorption = layer_materials[way.material].absorption;
     if (way.is_straight) {
@@ -122,6 +120,9 @@ vec4 radiance_behind(inout Way way, float slab_m, float level, bool has_samples)
       }
       if (is_slab) {
         way.left *= beer_lambert(absorption, slab_m);
+        if (seen.texco.x >= 0.0) {
+          return behind_at(seen.texco, level);
+        }
         vec4 exit = view.clip_from_world * vec4(way.ray.origin + slab_m * way.ray.direction, 1.0);
         return behind_at(exit.w > 0.0 ? clamp(0.5 * exit.xy / exit.w + 0.5, vec2(0.0), vec2(1.0)) : texco, level);
       }
@@ -193,4 +194,27 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
   result.behind = radiance_behind(way, slab_m, level, has_samples);
   result.passed = way.left;
   return result;
+}
+
+/**
+ * Part of the world's mirrored light that nothing hides: neither a surface that transmits light nor one in the picture. 0 or 1, in each
+ * sample for another microfacet.
+ */
+float mirror_part(Surface surface, float roughness)
+{
+  bool has_samples = view.texture_lod_bias < 0.0;
+  float alpha = roughness * roughness;
+  vec3 facet_ws = surface.normal_ws;
+  if (alpha > ALPHA_MIN) {
+    // A mirrored direction would be that of the whole lobe.
+    if (!has_samples) {
+      return 1.0;
+    }
+    facet_ws = visible_microfacet(surface.normal_ws, surface.view_ws, alpha, random_pair(64u));
+  }
+  Ray ray = Ray(surface.position_ws, reflect(-surface.view_ws, facet_ws), gl_FrontFacing);
+  if (dot(ray.direction, surface.normal_ws) <= 0.0 || trace_bodies(ray).distance_m < NO_HIT) {
+    return 0.0;
+  }
+  return march_behind(ray, NO_HIT, has_samples ? 0.9 * random_pair(65u).y : 0.0).is_met ? 0.0 : 1.0;
 }

@@ -49,9 +49,13 @@ bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh)
 bool lets_light_through(const scene::Scene &scene, const scene::Mesh &mesh)
 {
   const scene::Material &material = scene.material_of(mesh);
-  return is_blended(scene, mesh) ||
-         (material.has_transmission() && material.alpha_mode == scene::AlphaMode::Opaque && !(material.thickness > 0.0F) &&
-          !is_drawable(scene, mesh, material.transmission_texture));
+  return is_blended(scene, mesh) || (material.has_transmission() && material.alpha_mode == scene::AlphaMode::Opaque &&
+                                     !is_drawable(scene, mesh, material.transmission_texture));
+}
+
+bool has_open_shadow(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return is_blended(scene, mesh) || (lets_light_through(scene, mesh) && !(scene.material_of(mesh).thickness > 0.0F));
 }
 
 /** Absorption coefficient of the material's volume, 1/m. */

@@ -62,8 +62,8 @@ def parts_of(mesh, slots):
         if uvs is not None:
             arrays['uvs'] = uvs[corners]
         name, is_glass = slots[min(index, len(slots) - 1)] if slots else (None, False)
-        thickness = closed.mean_chord(arrays['positions'], arrays['triangles']) if is_glass else None
-        parts.append(Part(arrays, name and (name, round(thickness or 0.0, 6))))
+        thickness = closed.thickness(arrays['positions'], arrays['triangles']) if is_glass else 0.0
+        parts.append(Part(arrays, name and (name, round(thickness, 6))))
     return parts
 
 

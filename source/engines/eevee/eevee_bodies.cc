@@ -86,13 +86,25 @@ void write(const BoxTree &tree, std::span<const Triangle> triangles, std::vector
 void Bodies::update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
                     const Settings &settings, const SceneWorld &world, const draw::TextureBinding &stand_in)
 {
+  gpu::Device &device = scene.device();
+  const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;
+  picture_binding_ =
+      world.picture() ? draw::TextureBinding{world.picture().id(), world.picture_sampler().id()} : stand_in;
+  const Key key{scene.objects().revision(),
+                scene.passes_revision(),
+                scene.content_revision(),
+                device.loss_count(),
+                {background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}}};
+  if (texels_ && key_ == key) {
+    return;
+  }
+  key_ = key;
   std::vector<Triangle> triangles;
   for (const TransmissiveObject &one : objects) {
     if (!one.is_blended) {
       add_triangles(scene, one.object, triangles);
     }
   }
-  gpu::Device &device = scene.device();
   // A tree has fewer nodes than items.
   const auto texels_max = std::size_t(device.limits().buffer_texels_max) - BODY_HEAD_TEXELS;
   const std::size_t triangles_max =
@@ -109,9 +121,8 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
     boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
   }
   const BoxTree tree(boxes);
-  const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;
-  std::vector<glm::vec4> texels = {background_color(settings, scene),
-                                   {float(tree.nodes().size()), turn, world.picture() ? 1.0F : 0.0F, 0.0F}};
+  std::vector<glm::vec4> texels(key.background.begin(), key.background.end());
+  texels[1].x = float(tree.nodes().size());
   write(tree, triangles, texels);
   const int width = std::min(int(std::bit_ceil(texels.size())), device.limits().buffer_texels_max);
   texels.resize(std::size_t(width));
@@ -124,8 +135,6 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
   }
   device.upload(texels_, 0, std::as_bytes(std::span(texels)));
   texels_binding_ = {texels_.id(), sampler_.id()};
-  picture_binding_ = world.picture() ? draw::TextureBinding{world.picture().id(), world.picture_sampler().id()}
-                                     : stand_in;
 }
 
 void Bodies::free()

@@ -6,6 +6,7 @@
 
 #include "draw_pass.hh"
 
+#include <array>
 #include <span>
 
 namespace gnomon::eevee {
@@ -28,6 +29,18 @@ class Bodies {
   void report(ResourceReport &report) const;
 
  private:
+  /** Inputs from which `texels_` was made. */
+  struct Key {
+    std::uint64_t objects = 0;
+    std::uint64_t passes = 0;
+    std::uint64_t content = 0;
+    /** gpu::Device::loss_count */
+    std::uint64_t losses = 0;
+    std::array<glm::vec4, 2> background{};
+
+    bool operator==(const Key &) const = default;
+  };
+  Key key_;
   gpu::Texture texels_;
   gpu::Sampler sampler_;
   /** Read by recorded passes, which may outlive a texture. */
