@@ -187,6 +187,7 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
   vec3 parts = room / max(abs(path.way), vec3(1e-20));
   float whole = clamp(min(min(parts.x, parts.y), min(parts.z, 1.0)), 0.0, 1.0);
   float length_px = length(path.way.xy * whole * 0.5 * vec2(textureSize(behind_depth, 0)));
+  float pixel = whole / max(length_px, 1.0);
   int steps = clamp(int(ceil(length_px / step_px)), 1, step_max);
   // Metres along the view axis: perspective scale / (z - z of infinity), orthographic z / change of z in a metre.
   float scale = from.z - ahead.z * from.w;
@@ -221,11 +222,12 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
         high = middle;
       }
     }
-    vec3 depths = vec3(path.start.z + vec2(high, low) * path.way.z, seen_at(path, high));
-    vec3 depths_m = is_perspective ? scale / max(depths - ahead.z, vec3(1e-20)) : depths / ahead.z;
-    // A ray that is farther behind passes behind the body that is seen there.
-    float thickness_m = 0.02 * (is_perspective ? depths_m.z : 0.1 / abs(ahead.z)) + 2.0 * abs(depths_m.x - depths_m.y);
-    bool is_met = hidden_m == NO_HIT && abs(depths_m.x - depths_m.z) <= thickness_m;
+    vec4 depths = vec4(path.start.z + vec2(high, low) * path.way.z, seen_at(path, high), seen_at(path, high + pixel));
+    vec4 depths_m = is_perspective ? scale / max(depths - ahead.z, vec4(1e-20)) : depths / ahead.z;
+    // A ray that is farther behind passes behind the body that is seen there. A surface changes its depth within a pixel.
+    float margin_m = 0.002 * (is_perspective ? depths_m.z : 0.1 / abs(ahead.z)) + 2.0 * abs(depths_m.x - depths_m.y);
+    float slope_m = depths.w > 0.0 ? 1.5 * min(abs(depths_m.w - depths_m.z), 0.015 * depths_m.z) : 0.0;
+    bool is_met = hidden_m == NO_HIT && abs(depths_m.x - depths_m.z) <= margin_m + slope_m;
     // What is seen now is farther than the place where the ray was hidden, so that it has met it before.
     if (is_met || depths_m.z > hidden_m) {
       return PictureHit(true, texco_at(path, high), distance_at(path, high));

@@ -49,6 +49,8 @@ struct Transmission {
   float part;
   /** What the base passes of the radiance behind it, as if no layer lay over it. */
   vec3 passed;
+  /** Radiance that surfaces behind this one mirror, as much as the base passes of it. */
+  vec3 mirrored;
   /** Radiance towards the viewer, W/(sr m²), and alpha of what is behind. */
   vec4 behind;
 };
@@ -61,11 +63,28 @@ float reflection_scale(FullMaterialData full, float ior)
   return min(0.04 * full.specular * max(max(color.r, color.g), color.b) / max(f0 * f0, 1e-6), 1.0);
 }
 
+/**
+ * 1 if a ray of mirrored light from a surface meets neither a surface that transmits light nor one in the picture; otherwise 0.
+ * \a normal_ws: on the ray's side.
+ */
+float sky_part(vec3 position_ws, vec3 direction_ws, vec3 normal_ws, bool is_front)
+{
+  // It leaves its own surface through the back of what it would meet there.
+  Ray ray = Ray(position_ws, direction_ws, !is_front);
+  if (dot(direction_ws, normal_ws) <= 0.0 || trace_bodies(ray).distance_m < NO_HIT) {
+    return 0.0;
+  }
+  bool has_samples = view.texture_lod_bias < 0.0;
+  return march_behind(ray, NO_HIT, has_samples ? 0.9 * random_pair(65u).y : 0.0).is_met ? 0.0 : 1.0;
+}
+
 /** The light's way behind the nearest surface. */
 struct Way {
   Ray ray;
   /** What its surfaces and its media leave of the light. */
   vec3 left;
+  /** What arrives of the world's light that its surfaces mirror, radiance. */
+  vec3 mirrored;
   /** Within a body of this material. */
   bool is_inside;
   uint material;
@@ -133,12 +152,19 @@ vec4 radiance_behind(inout Way way, float slab_m, float level, bool has_samples)
     LayerData layer = layer_materials[hit.material];
     FullMaterialData full = full_materials[hit.material];
     way.left *= way.is_inside ? beer_lambert(absorption, hit.distance_m) : vec3(1.0);
-    way.left *= layer.transmission * (1.0 - full.metallic) * full.base_color;
     way.ray.origin += hit.distance_m * way.ray.direction;
     bool is_body = layer.thickness > 0.0;
     float cos_i = -dot(hit.normal_ws, way.ray.direction);
     float ratio = hit.is_front || !is_body ? 1.0 / layer.ior : layer.ior;
-    way.left *= 1.0 - reflection_scale(full, layer.ior) * dielectric_reflectance(cos_i, ratio);
+    float reflectance = reflection_scale(full, layer.ior) * dielectric_reflectance(cos_i, ratio);
+#ifdef USE_WORLD
+    if (hit.is_front && reflectance > 0.01) {
+      vec3 mirrored_ws = reflect(way.ray.direction, hit.normal_ws);
+      vec3 sky = world_radiance(mirrored_ws, full.roughness * full.roughness);
+      way.mirrored += way.left * sky * (reflectance * sky_part(way.ray.origin, mirrored_ws, hit.normal_ws, true));
+    }
+#endif
+    way.left *= (1.0 - reflectance) * layer.transmission * (1.0 - full.metallic) * full.base_color;
     if (is_body) {
       way.left *= refracted(way, hit.normal_ws, hit.is_front, layer.ior, has_samples ? full.roughness : 0.0, uint(i));
       way.material = hit.material;
@@ -177,7 +203,7 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
   vec3 albedo = specular_albedo(table, material.specular_f0, material.specular_f90);
   float entering = clamp(1.0 - max(max(albedo.r, albedo.g), albedo.b), 0.0, 1.0);
 #endif
-  Way way = Way(Ray(surface.position_ws, -surface.view_ws, gl_FrontFacing), vec3(result.part * entering) * material.diffuse, false,
+  Way way = Way(Ray(surface.position_ws, -surface.view_ws, gl_FrontFacing), vec3(result.part * entering) * material.diffuse, vec3(0.0), false,
                 surface_material, true);
   // The bias is 0 for one sample.
   bool has_samples = view.texture_lod_bias < 0.0;
@@ -193,6 +219,7 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
   float level = is_body && has_samples ? 0.0 : transmission_level(roughness, surface_lens.z, float(textureSize(behind, 0).y));
   result.behind = radiance_behind(way, slab_m, level, has_samples);
   result.passed = way.left;
+  result.mirrored = way.mirrored;
   return result;
 }
 
@@ -212,9 +239,5 @@ float mirror_part(Surface surface, float roughness)
     }
     facet_ws = visible_microfacet(surface.normal_ws, surface.view_ws, alpha, random_pair(64u));
   }
-  Ray ray = Ray(surface.position_ws, reflect(-surface.view_ws, facet_ws), gl_FrontFacing);
-  if (dot(ray.direction, surface.normal_ws) <= 0.0 || trace_bodies(ray).distance_m < NO_HIT) {
-    return 0.0;
-  }
-  return march_behind(ray, NO_HIT, has_samples ? 0.9 * random_pair(65u).y : 0.0).is_met ? 0.0 : 1.0;
+  return sky_part(surface.position_ws, reflect(-surface.view_ws, facet_ws), surface.normal_ws, gl_FrontFacing);
 }

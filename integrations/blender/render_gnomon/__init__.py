@@ -256,7 +256,7 @@ class Export:
             extension = type(written.extensions['KHR_materials_transmission'])
             twin.extensions = {**written.extensions, 'KHR_materials_volume': extension('KHR_materials_volume', volume, False)}
             if thickness == closed.ENDLESS:
-                twin.extras = {**(written.extras or {}), 'gnomon_thickness': thickness}
+                twin.extras = {'gnomon_thickness': thickness, **(written.extras or {})}
             self.volumes[key] = twin
         return self.volumes[key]
 
