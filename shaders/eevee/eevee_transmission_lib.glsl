@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // For fragment shaders: light from behind a surface that passes it (KHR_materials_transmission, KHR_materials_volume).
 #include "draw/draw_view_lib.glsl"
+#include "eevee/eevee_bodies_lib.glsl"
 #include "eevee/eevee_full_material_lib.glsl"
 #include "eevee/eevee_layer_block_lib.glsl"
 #include "eevee/eevee_ltc_lib.glsl"
@@ -48,9 +49,135 @@ struct Transmission {
   float part;
   /** What the base passes of the radiance behind it, as if no layer lay over it. */
   vec3 passed;
+  /** Radiance that surfaces behind this one mirror, as much as the base passes of it. */
+  vec3 mirrored;
   /** Radiance towards the viewer, W/(sr m²), and alpha of what is behind. */
   vec4 behind;
 };
+
+/** Factor of the Fresnel reflectance of a dielectric by which a material reflects: glTF lets a material reflect less than its index says. */
+float reflection_scale(FullMaterialData full, float ior)
+{
+  float f0 = (ior - 1.0) / (ior + 1.0);
+  vec3 color = full.specular_color;
+  return min(0.04 * full.specular * max(max(color.r, color.g), color.b) / max(f0 * f0, 1e-6), 1.0);
+}
+
+/**
+ * 1 if a ray of mirrored light from a surface meets neither a surface that transmits light nor one in the picture; otherwise 0.
+ * \a normal_ws: on the ray's side.
+ */
+float sky_part(vec3 position_ws, vec3 direction_ws, vec3 normal_ws, bool is_front)
+{
+  // It leaves its own surface through the back of what it would meet there.
+  Ray ray = Ray(position_ws, direction_ws, !is_front);
+  if (dot(direction_ws, normal_ws) <= 0.0 || trace_bodies(ray).distance_m < NO_HIT) {
+    return 0.0;
+  }
+  bool has_samples = view.texture_lod_bias < 0.0;
+  return march_behind(ray, NO_HIT, has_samples ? 0.9 * random_pair(65u).y : 0.0).is_met ? 0.0 : 1.0;
+}
+
+/** The light's way behind the nearest surface. */
+struct Way {
+  Ray ray;
+  /** What its surfaces and its media leave of the light. */
+  vec3 left;
+  /** What arrives of the world's light that its surfaces mirror, radiance. */
+  vec3 mirrored;
+  /** Within a body of this material. */
+  bool is_inside;
+  uint material;
+  /** No surface has changed its direction, so that it ends in the pixel of the surface. */
+  bool is_straight;
+};
+
+/**
+ * Let the light pass a surface of a body. \a normal_ws: towards the ray's origin. \a roughness: 0 unless the picture has several
+ * samples, in each of which it meets another microfacet. \return what the microfacets do not shadow; 0 if no light passes
+ */
+float refracted(inout Way way, vec3 normal_ws, bool is_front, float ior, float roughness, uint number)
+{
+  float alpha = roughness * roughness;
+  vec3 facet_ws = normal_ws;
+  if (alpha > ALPHA_MIN) {
+    facet_ws = visible_microfacet(normal_ws, -way.ray.direction, alpha, random_pair(number));
+  }
+  vec3 direction = refract(way.ray.direction, facet_ws, is_front ? 1.0 / ior : ior);
+  float cos_l = -dot(direction, normal_ws);
+  way.is_straight = false;
+  way.is_inside = is_front;
+  way.ray.direction = direction;
+  way.ray.left_front = is_front;
+  // 0: total reflection.
+  return cos_l <= 0.0 ? 0.0 : alpha > ALPHA_MIN ? 2.0 * cos_l * ggx_masking_over_2cos(cos_l, alpha) : 1.0;
+}
+
+/** Radiance and alpha at the end of a way. \a slab_m: length of the way in a body whose back is not found. */
+vec4 radiance_behind(inout Way way, float slab_m, float level, bool has_samples)
+{
+  vec2 size = vec2(textureSize(behind, 0));
+  vec2 texco = gl_FragCoord.xy / size;
+  float seen_depth = texelFetch(behind_depth, ivec2(gl_FragCoord.xy), 0).r;
+  float start = has_samples ? 0.9 * random_pair(0u).y : 0.0;
+  for (int i = 1; i <= BODY_SURFACES_MAX; i++) {
+    BodyHit hit = trace_bodies(way.ray);
+    bool is_slab = way.is_inside && (hit.distance_m >= NO_HIT || hit.is_front);
+    vec3 absorption = layer_materials[way.material].absorption;
+    if (way.is_straight) {
+      vec4 place = view.clip_from_world * vec4(way.ray.origin + hit.distance_m * way.ray.direction, 1.0);
+      if (hit.distance_m >= NO_HIT || place.z < seen_depth * place.w) {
+        return behind_at(texco, level);
+      }
+    }
+    else {
+      float length_m = is_slab ? slab_m : hit.distance_m;
+      PictureHit seen = march_behind(way.ray, length_m, start);
+      if (seen.is_met) {
+        way.left *= way.is_inside ? beer_lambert(absorption, seen.distance_m) : vec3(1.0);
+        return behind_at(seen.texco, level);
+      }
+      if (is_slab) {
+        way.left *= beer_lambert(absorption, slab_m);
+        if (seen.texco.x >= 0.0) {
+          return behind_at(seen.texco, level);
+        }
+        vec4 exit = view.clip_from_world * vec4(way.ray.origin + slab_m * way.ray.direction, 1.0);
+        return behind_at(exit.w > 0.0 ? clamp(0.5 * exit.xy / exit.w + 0.5, vec2(0.0), vec2(1.0)) : texco, level);
+      }
+      if (hit.distance_m >= NO_HIT) {
+        return background_radiance(way.ray.direction);
+      }
+    }
+    LayerData layer = layer_materials[hit.material];
+    FullMaterialData full = full_materials[hit.material];
+    way.left *= way.is_inside ? beer_lambert(absorption, hit.distance_m) : vec3(1.0);
+    way.ray.origin += hit.distance_m * way.ray.direction;
+    bool is_body = layer.thickness > 0.0;
+    float cos_i = -dot(hit.normal_ws, way.ray.direction);
+    float ratio = hit.is_front || !is_body ? 1.0 / layer.ior : layer.ior;
+    float reflectance = reflection_scale(full, layer.ior) * dielectric_reflectance(cos_i, ratio);
+#ifdef USE_WORLD
+    if (hit.is_front && reflectance > 0.01) {
+      vec3 mirrored_ws = reflect(way.ray.direction, hit.normal_ws);
+      vec3 sky = world_radiance(mirrored_ws, full.roughness * full.roughness);
+      way.mirrored += way.left * sky * (reflectance * sky_part(way.ray.origin, mirrored_ws, hit.normal_ws, true));
+    }
+#endif
+    way.left *= (1.0 - reflectance) * layer.transmission * (1.0 - full.metallic) * full.base_color;
+    if (is_body) {
+      way.left *= refracted(way, hit.normal_ws, hit.is_front, layer.ior, has_samples ? full.roughness : 0.0, uint(i));
+      way.material = hit.material;
+    }
+    else {
+      way.ray.left_front = hit.is_front;
+    }
+    if (max(max(way.left.r, way.left.g), way.left.b) <= 0.0) {
+      return vec4(0.0, 0.0, 0.0, 1.0);
+    }
+  }
+  return vec4(0.0, 0.0, 0.0, 1.0);
+}
 
 /**
  * \a material: with the diffuse albedo of a surface without transmission. \a roughness: perceptual, of the blur of what is behind.
@@ -67,17 +194,6 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
   if (has_input(INPUT_THICKNESS)) {
     thickness *= texture(thickness_texture, surface_transmission_uvs.zw, view.texture_lod_bias).g;
   }
-  vec2 size = vec2(textureSize(behind, 0));
-  vec2 texco = gl_FragCoord.xy / size;
-  float way_m = 0.0;
-  if (thickness > 0.0) {
-    vec3 inside_ws = refract(-surface.view_ws, surface.normal_ws, 1.0 / surface_lens.z);
-    // A way of 1 m in world space, measured in object space. A matrix that flattens the object has no inverse.
-    float shrunk = length(surface_object_from_world * inside_ws);
-    way_m = shrunk > 1e-9 && shrunk < 1e9 ? thickness / shrunk : 0.0;
-    vec4 exit = view.clip_from_world * vec4(surface.position_ws + way_m * inside_ws, 1.0);
-    texco = exit.w > 0.0 ? clamp(0.5 * exit.xy / exit.w + 0.5, vec2(0.0), vec2(1.0)) : texco;
-  }
 #ifdef USE_MULTISCATTER
   float entering = unreflected(surface.multiscatter.view, material.specular_f0, material.specular_f90,
                                surface.multiscatter.color);
@@ -87,7 +203,41 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
   vec3 albedo = specular_albedo(table, material.specular_f0, material.specular_f90);
   float entering = clamp(1.0 - max(max(albedo.r, albedo.g), albedo.b), 0.0, 1.0);
 #endif
-  result.passed = result.part * entering * material.diffuse * beer_lambert(data.absorption, way_m);
-  result.behind = behind_at(texco, transmission_level(roughness, surface_lens.z, size.y));
+  Way way = Way(Ray(surface.position_ws, -surface.view_ws, gl_FrontFacing), vec3(result.part * entering) * material.diffuse, vec3(0.0), false,
+                surface_material, true);
+  // The bias is 0 for one sample.
+  bool has_samples = view.texture_lod_bias < 0.0;
+  bool is_body = thickness > 0.0;
+  float slab_m = 0.0;
+  if (is_body) {
+    way.left *= refracted(way, surface.normal_ws, gl_FrontFacing, surface_lens.z, has_samples ? roughness : 0.0, 0u);
+    // A way of 1 m in world space, measured in object space. A matrix that flattens the object has no inverse.
+    float shrunk = length(surface_object_from_world * way.ray.direction);
+    slab_m = shrunk > 1e-9 && shrunk < 1e9 ? thickness / shrunk : 0.0;
+  }
+  // Microfacets blur what is behind a body, over the samples.
+  float level = is_body && has_samples ? 0.0 : transmission_level(roughness, surface_lens.z, float(textureSize(behind, 0).y));
+  result.behind = radiance_behind(way, slab_m, level, has_samples);
+  result.passed = way.left;
+  result.mirrored = way.mirrored;
   return result;
+}
+
+/**
+ * Part of the world's mirrored light that nothing hides: neither a surface that transmits light nor one in the picture. 0 or 1, in each
+ * sample for another microfacet.
+ */
+float mirror_part(Surface surface, float roughness)
+{
+  bool has_samples = view.texture_lod_bias < 0.0;
+  float alpha = roughness * roughness;
+  vec3 facet_ws = surface.normal_ws;
+  if (alpha > ALPHA_MIN) {
+    // A mirrored direction would be that of the whole lobe.
+    if (!has_samples) {
+      return 1.0;
+    }
+    facet_ws = visible_microfacet(surface.normal_ws, surface.view_ws, alpha, random_pair(64u));
+  }
+  return sky_part(surface.position_ws, reflect(-surface.view_ws, facet_ws), surface.normal_ws, gl_FrontFacing);
 }

@@ -86,6 +86,11 @@ vec3 world_diffuse(WorldParts parts, Surface surface)
   return world_irradiance(world, surface.normal_ws) * world_arriving(parts, surface, surface.normal_ws);
 }
 
+#ifdef USE_TRANSMISSION
+/** Part of the mirrored world that the picture does not hide. \see mirror_part */
+float mirror_seen = 1.0;
+#endif
+
 #ifdef USE_SPECULAR
 layout(binding = WORLD_LEVELS_SLOT) uniform sampler2DArray world_levels;
 
@@ -115,6 +120,9 @@ vec3 world_mirrored(MaterialData material, Surface surface, vec3 normal_ws, vec3
   vec3 mirrored = mirrored_view(surface, normal_ws);
   // The dominant direction of a rough lobe is closer to the normal (Lagarde and de Rousiers 2014, 4.9.3).
   float lean = (1.0 - material.alpha) * (sqrt(max(1.0 - material.alpha, 0.0)) + material.alpha);
+#  ifdef USE_TRANSMISSION
+  albedo *= mirror_seen;
+#  endif
   return albedo * world_radiance(mix(normal_ws, mirrored, lean), material.alpha);
 }
 

@@ -53,6 +53,11 @@ bool lets_light_through(const scene::Scene &scene, const scene::Mesh &mesh)
                                      !is_drawable(scene, mesh, material.transmission_texture));
 }
 
+bool has_open_shadow(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return is_blended(scene, mesh) || (lets_light_through(scene, mesh) && !(scene.material_of(mesh).thickness > 0.0F));
+}
+
 /** Absorption coefficient of the material's volume, 1/m. */
 static glm::vec3 absorption(const scene::Material &material)
 {

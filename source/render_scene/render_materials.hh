@@ -25,10 +25,16 @@ namespace gnomon::render_scene {
 [[nodiscard]] bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh);
 
 /**
- * Whether shadows of the mesh let a part of the light through: it is blended, or transmits light. A material with a
- * transmission texture casts the shadow of an opaque one, and a masked one that of what its mask leaves.
+ * Whether a part of the light goes through the mesh: it is blended, or transmits light. A material with a transmission
+ * texture counts as an opaque one, and a masked one as what its mask leaves.
  */
 [[nodiscard]] bool lets_light_through(const scene::Scene &scene, const scene::Mesh &mesh);
+
+/**
+ * Whether a part of a lamp's light goes straight on through the mesh: lets_light_through, and it is no body of a
+ * thickness, which refracts light. Nothing draws the light that it would focus elsewhere.
+ */
+[[nodiscard]] bool has_open_shadow(const scene::Scene &scene, const scene::Mesh &mesh);
 
 /** Part of white light that passes a white surface of the material, without its textures; for shadows. */
 [[nodiscard]] float transmitted_part(const scene::Material &material);

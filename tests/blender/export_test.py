@@ -420,6 +420,10 @@ class Materials(ExportTest):
         mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
         mesh.materials.append(glass)
         add('sheet', mesh)
+        wave = bpy.data.meshes.new('wave')
+        wave.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0.1), (1, 1, 0.3)], [], [(0, 1, 2), (1, 3, 2)])
+        wave.materials.append(glass)
+        add('wave', wave)
         file = File()
         thickness = {}
         for name in ('ball', 'box', 'twin', 'sheet'):
@@ -430,7 +434,11 @@ class Materials(ExportTest):
         self.assertAlmostEqual(thickness['box'][1], 4 * 8 / 24, 5)
         self.assertEqual(thickness['box'], thickness['twin'])
         self.assertIsNone(thickness['sheet'][1])
-        self.assertIn("mesh 'sheet': its part of 'glass' is not closed", file.report)
+        self.assertIn("mesh 'sheet': its part of 'glass' is a plane", file.report)
+        index = file.json['meshes'][file.node('wave')['mesh']]['primitives'][0]['material']
+        wave = file.json['materials'][index]
+        self.assertEqual(wave['extras']['gnomon_thickness'], 1e6)
+        self.assertNotIn('KHR_materials_volume', wave['extensions'])
 
     def test_absorption_is_that_of_blender(self):
         glass = material('glass', Transmission=1.0)

@@ -53,6 +53,13 @@ class MeanChord(unittest.TestCase):
         self.assertIsNone(closed.mean_chord(numpy.zeros((3, 3)), numpy.array([(0, 1, 2)])))
 
 
+    def test_is_endless_behind_an_open_surface_and_zero_in_a_plane(self):
+        self.assertEqual(closed.thickness(box(1, 1, 1), BOX_TRIANGLES[:-1]), closed.ENDLESS)
+        self.assertEqual(closed.thickness(box(2, 2, 2), BOX_TRIANGLES), closed.mean_chord(box(2, 2, 2), BOX_TRIANGLES))
+        self.assertEqual(closed.thickness(box(1, 1, 1, (3, 4, 5)), BOX_TRIANGLES[:2]), 0)
+        self.assertEqual(closed.thickness(box(1, 1, 1), BOX_TRIANGLES[:0]), 0)
+
+
 class Lamps(unittest.TestCase):
     def test_temperature_and_exposure_of_later_versions(self):
         lamp = types.SimpleNamespace(type='POINT', color=(1, 1, 0.5), energy=10.0, use_nodes=False, use_temperature=True,

@@ -767,6 +767,12 @@ TEST(GltfMaterial, TransmissionAndVolumeAreRead)
   EXPECT_TRUE(glass.transmission_texture && glass.thickness_texture);
   EXPECT_NO_WARNING(scene, "KHR_materials");
 
+  const auto [own, own_scene] = import_material({{"extensions",
+                                                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                                   {"KHR_materials_volume", {{"thicknessFactor", 0.25}}}}},
+                                                 {"extras", {{"gnomon_thickness", 2.5}}}});
+  EXPECT_EQ(own.thickness, 2.5F);
+
   const auto [odd, odd_scene] =
       import_glass({{"transmissionFactor", 2}},
                    {{"thicknessFactor", -1}, {"thicknessTexture", slot}, {"attenuationDistance", 0}}, 0.5);

@@ -226,14 +226,14 @@ class Export:
                 continue
             indices = [i for i, each in enumerate(slots) if each == material]
             thickness = self.thickness(mesh, indices)
-            if thickness is None:
-                self.report.add(f"mesh '{mesh.name}'", f"its part of '{material.name}' is not closed; it is drawn as a thin wall")
+            if thickness == 0:
+                self.report.add(f"mesh '{mesh.name}'", f"its part of '{material.name}' is a plane; it is drawn as a thin wall")
                 continue
             primitive.material = self.with_volume(written, material, thickness)
 
     @staticmethod
     def thickness(mesh, slot_indices):
-        """Mean thickness of the closed body of the triangles in some material slots, metres; None if it is not closed."""
+        """See closed.thickness, of the triangles in some material slots."""
         mesh.calc_loop_triangles()
         positions = numpy.empty(3 * len(mesh.vertices), numpy.float32)
         mesh.vertices.foreach_get('co', positions)
@@ -241,19 +241,22 @@ class Export:
         mesh.loop_triangles.foreach_get('vertices', triangles)
         slots = numpy.empty(len(mesh.loop_triangles), numpy.int32)
         mesh.loop_triangles.foreach_get('material_index', slots)
-        return closed.mean_chord(positions.reshape(-1, 3), triangles.reshape(-1, 3)[numpy.isin(slots, slot_indices)])
+        return closed.thickness(positions.reshape(-1, 3), triangles.reshape(-1, 3)[numpy.isin(slots, slot_indices)])
 
     def with_volume(self, written, material, thickness):
         """A copy of a written material for bodies of a thickness; the same for the same arguments."""
         key = (material.name_full, round(thickness, 6))
         if key not in self.volumes:
-            volume = {'thicknessFactor': thickness}
+            # To other programs, an open surface is a thin wall, as its thickness is not known.
+            volume = {'thicknessFactor': thickness} if thickness < closed.ENDLESS else {}
             color = materials.absorption(material)
             if color is not None:
                 volume['attenuationColor'], volume['attenuationDistance'] = color
             twin = copy.copy(written)
             extension = type(written.extensions['KHR_materials_transmission'])
             twin.extensions = {**written.extensions, 'KHR_materials_volume': extension('KHR_materials_volume', volume, False)}
+            if thickness == closed.ENDLESS:
+                twin.extras = {'gnomon_thickness': thickness, **(written.extras or {})}
             self.volumes[key] = twin
         return self.volumes[key]
 

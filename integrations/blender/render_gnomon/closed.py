@@ -4,6 +4,23 @@
 import numpy
 
 
+# A thickness without an end, metres: behind an open surface, the medium goes on to the next surface.
+ENDLESS = 1e6
+
+
+def thickness(positions, triangles):
+    """The thickness of the medium behind some triangles: that of a closed body, ENDLESS behind an open surface, and 0 in a plane.
+
+    Cycles refracts light at each surface. A pane is a thin wall all the same: its light goes straight on, and so does that of a lamp.
+    """
+    chord = mean_chord(positions, triangles)
+    if chord is not None or len(triangles) == 0:
+        return chord or 0.0
+    points = numpy.asarray(positions, numpy.float64)[numpy.unique(triangles)]
+    spread = numpy.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return ENDLESS if spread[2] > 1e-4 * spread[0] else 0.0
+
+
 def mean_chord(positions, triangles):
     """The mean length of the straight ways through a closed body, 4 · volume / surface (Cauchy), in the positions' unit.
 

@@ -62,8 +62,8 @@ def parts_of(mesh, slots):
         if uvs is not None:
             arrays['uvs'] = uvs[corners]
         name, is_glass = slots[min(index, len(slots) - 1)] if slots else (None, False)
-        thickness = closed.mean_chord(arrays['positions'], arrays['triangles']) if is_glass else None
-        parts.append(Part(arrays, name and (name, round(thickness or 0.0, 6))))
+        thickness = closed.thickness(arrays['positions'], arrays['triangles']) if is_glass else 0.0
+        parts.append(Part(arrays, name and (name, round(thickness, 6))))
     return parts
 
 
@@ -88,6 +88,8 @@ class Collector:
         self.images = {}
         # Properties of the materials of one depsgraph, by name.
         self.materials = {}
+        # By the name of a material: its custom property gnomon_thickness.
+        self.thicknesses = {}
         self.remarks = []
         self.last = None
         # The number of instances of the last depsgraph.
@@ -129,6 +131,7 @@ class Collector:
         self.forget(depsgraph)
         self.remarks = []
         self.materials = {}
+        self.thicknesses = {}
         self.repeated = set()
         content = Content()
         instances = depsgraph.object_instances
@@ -212,13 +215,15 @@ class Collector:
             if values['transmission'] > 0 and (absorption := materials.absorption(material)) is not None:
                 values['attenuation_color'], values['attenuation_distance'] = absorption
             self.materials[name] = values
+            if 'gnomon_thickness' in material:
+                self.thicknesses[name] = max(float(material['gnomon_thickness']), 0.0)
         return name, self.materials[name]['transmission'] > 0
 
     def add_materials(self, parts, content):
         for part in parts:
             if part.material is not None and part.material not in content.materials:
                 name, thickness = part.material
-                content.materials[part.material] = {**self.materials[name], 'thickness': thickness}
+                content.materials[part.material] = {**self.materials[name], 'thickness': self.thicknesses.get(name, thickness)}
 
     def properties_of(self, material, content):
         values = {**MATERIAL, 'name': material.name, 'is_double_sided': not material.use_backface_culling}

@@ -7,6 +7,16 @@
 
 namespace gnomon::eevee {
 
+glm::vec4 background_color(const Settings &settings, const render_scene::RenderScene &scene)
+{
+  if (!has_background(settings, scene)) {
+    return glm::vec4(0.0F);
+  }
+  const std::optional<scene::World> &world = scene.scene().world();
+  const bool is_color = settings.background.kind == Background::Kind::Color;
+  return {is_color ? settings.background.color : world->strength * world->color, 1.0F};
+}
+
 void BackgroundPass::record(ShaderCache &shaders, const render_scene::RenderScene &scene, const Settings &settings)
 {
   pass_.clear();
@@ -17,10 +27,7 @@ void BackgroundPass::record(ShaderCache &shaders, const render_scene::RenderScen
   const bool is_picture = bool(world_.picture());
   draw::ShadingGroup &group =
       pass_.group(shaders.get(scene.device(), is_picture ? ShaderId::BackgroundWorld : ShaderId::BackgroundColor));
-  // The radiance of the background, or the factor of the world's picture.
-  const glm::vec3 color =
-      settings.background.kind == Background::Kind::Color ? settings.background.color : world->strength * world->color;
-  group.constant("color", glm::vec4(color, 0.0F));
+  group.constant("color", background_color(settings, scene));
   if (is_picture) {
     group.bind_texture("world_picture", world_.picture(), world_.picture_sampler());
     group.constant_ref("corner", &corner_);

@@ -7,6 +7,9 @@
 
 namespace gnomon::eevee {
 
+/** rgb: radiance of the background, or factor of the world's picture; alpha: 1. All 0 without a background. */
+[[nodiscard]] glm::vec4 background_color(const Settings &settings, const render_scene::RenderScene &scene);
+
 /** Draws the background behind the objects of a viewport. Internal to the engine. */
 class BackgroundPass {
  public:

@@ -184,7 +184,7 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
     const scene::Mesh &mesh = content.meshes()[handle];
     if (mesh.topology != scene::Topology::Triangles || mesh.indices.empty() ||
         !render_scene::is_drawable(content, content.material_of(mesh)) ||
-        render_scene::lets_light_through(content, mesh)) {
+        render_scene::has_open_shadow(content, mesh)) {
       continue;
     }
     const MeshKey key{handle.key(), content.meshes().revision(handle, scene::Mesh::Aspect::Shape)};

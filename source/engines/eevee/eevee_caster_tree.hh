@@ -28,13 +28,24 @@ class BoxTree {
   template <typename Visit>
   void visit(const glm::vec3 &origin, const glm::vec3 &direction, const float &t_max, Visit &&visit) const;
 
- private:
   struct Node {
     scene::Bounds box;
     /** The first of a leaf's `count` items. Otherwise the second child; the first child is the next node. */
     std::uint32_t next = 0;
     std::uint32_t count = 0;
   };
+  /** In depth-first order, from the root. */
+  [[nodiscard]] std::span<const Node> nodes() const
+  {
+    return nodes_;
+  }
+  /** The indices of the items in the order of the leaves. */
+  [[nodiscard]] std::span<const std::uint32_t> items() const
+  {
+    return items_;
+  }
+
+ private:
   void build(std::span<const scene::Bounds> boxes, std::size_t first, std::size_t end);
 
   std::vector<Node> nodes_;

@@ -55,6 +55,7 @@ void Engine::record(draw::Viewport &viewport)
   data.probe.make(viewport, settings_);
   data.adaptive.make(data.state(settings_), viewport);
   make_blocks(viewport);
+  data.transmission.update(scene_, data.materials.transmissive, settings_, shared.world);
   if (!shared.shadow_pass.has_casters()) {
     shared.shadows.allocate(viewport.device(), *shaders_);
   }

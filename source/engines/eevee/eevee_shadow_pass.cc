@@ -72,7 +72,7 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
   key.shape = scene.meshes().revision(handle, scene::Mesh::Aspect::Shape);
   key.host_shape = render_scene.meshes().host_batches().content_revision(handle);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
-  if (render_scene::is_masked(scene, mesh) || render_scene::lets_light_through(scene, mesh)) {
+  if (render_scene::is_masked(scene, mesh) || render_scene::has_open_shadow(scene, mesh)) {
     key.alpha_mode = std::uint64_t(material.alpha_mode);
     const scene::TextureSlot &slot = material.base_color_texture;
     if (render_scene::is_drawable(scene, mesh, slot)) {
@@ -190,7 +190,7 @@ ShadowPass::Kind ShadowPass::record_kind(render_scene::RenderScene &render_scene
     return {.handle = handle};
   }
   const scene::Material &material = scene.material_of(mesh);
-  const bool is_open = render_scene::lets_light_through(scene, mesh);
+  const bool is_open = render_scene::has_open_shadow(scene, mesh);
   const MaterialClass cut_out = is_open ? MaterialClass::Full : render_scene::mask_class(scene, mesh);
   const State winding = is_mirrored_[first] ? State::FrontClockwise : State::None;
   const FunctionText function = cut_out == MaterialClass::Plain ? FunctionText() : alpha_function_of(scene, material);
@@ -224,7 +224,7 @@ void ShadowPass::add_casters(render_scene::RenderScene &scene, std::span<const d
   for (Kind &kind : kinds_) {
     const scene::Mesh &mesh = scene.scene().meshes()[kind.handle];
     meshes.emplace_back(mesh.host_shape ? nullptr : &mesh, mesh_fingerprint(scene, kind.handle));
-    kind.is_blended = render_scene::lets_light_through(scene.scene(), mesh);
+    kind.is_blended = render_scene::has_open_shadow(scene.scene(), mesh);
   }
   for (const draw::ObjectIndex index : objects) {
     const std::uint32_t number = kind_of_[index];

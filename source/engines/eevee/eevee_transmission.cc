@@ -26,7 +26,7 @@ Transmission::Transmission(draw::ObjectBuffer &objects, const RenderBuffers &buf
 {
 }
 
-void Transmission::make(const draw::Viewport &viewport, bool is_rough)
+void Transmission::make(draw::Viewport &viewport, bool is_rough)
 {
   const glm::ivec2 size_px = viewport.drawn_size_px();
   const int levels = is_rough ? std::bit_width(unsigned(std::max(size_px.x, size_px.y))) : 1;
@@ -39,6 +39,7 @@ void Transmission::make(const draw::Viewport &viewport, bool is_rough)
                                    .width = size_px.x,
                                    .height = size_px.y,
                                    .mip_levels = levels});
+  behind_depth_ = create_target(device, "behind_depth", viewport.depth_texture().desc().format, size_px);
   sampler_ =
       device.create_sampler({.name = "behind_sampler", .filter = gpu::Filter::Linear, .mip = gpu::MipFilter::Nearest});
 }
@@ -46,6 +47,16 @@ void Transmission::make(const draw::Viewport &viewport, bool is_rough)
 void Transmission::free()
 {
   behind_ = {};
+  behind_depth_ = {};
+  bodies_.free();
+}
+
+void Transmission::update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
+                          const Settings &settings, const SceneWorld &world)
+{
+  if (behind_) {
+    bodies_.update(scene, objects, settings, world, {behind_.id(), sampler_.id()});
+  }
 }
 
 void Transmission::clear()
@@ -58,6 +69,8 @@ void Transmission::bind(draw::ShadingGroup &group) const
 {
   if (behind_) {
     group.bind_texture("behind", behind_, sampler_);
+    group.bind_texture("behind_depth", behind_depth_, buffers_.nearest);
+    bodies_.bind(group);
   }
 }
 
@@ -74,18 +87,19 @@ FramePass Transmission::depths() const
 FrameStep Transmission::copy_step()
 {
   return {.name = "behind",
-          .summary = "A copy of the radiance with mip levels, if a visible surface transmits light.",
+          .summary = "Copies of the radiance, with mip levels, and of the depth, if a visible surface transmits light.",
           .part = FrameStep::Part::Rows,
           .need =
               [](const FrameState &state) {
                 return need_of_transmission(state, true, "what is behind surfaces that transmit light", "");
               },
-          .reads = {"radiance"},
-          .writes = {"behind"},
+          .reads = {"radiance", "depth"},
+          .writes = {"behind", "behind_depth"},
           .work =
               [this](FrameSample &sample) {
                 gpu::Device &device = sample.viewport.device();
                 device.copy_layers(buffers_.radiance, behind_);
+                device.copy_layers(sample.viewport.depth_texture(), behind_depth_);
                 if (behind_.desc().mip_levels > 1) {
                   device.generate_mipmaps(behind_);
                 }
@@ -95,7 +109,7 @@ FrameStep Transmission::copy_step()
 FrameStep Transmission::step()
 {
   return {.name = "transmission",
-          .summary = "The nearest surfaces that transmit light refract the copy.",
+          .summary = "The nearest surfaces that transmit light show the copy at the ends of their rays.",
           .part = FrameStep::Part::Rows,
           .need =
               [this](const FrameState &state) {
@@ -114,6 +128,8 @@ FrameStep Transmission::step()
 void Transmission::report(ResourceReport &report) const
 {
   report.add_target(behind_, "behind", "what is seen through surfaces", report.why_no_feature(Feature::Transmission));
+  report.add_target(behind_depth_, "behind_depth", "where rays end", report.why_no_feature(Feature::Transmission));
+  bodies_.report(report);
 }
 
 }  // namespace gnomon::eevee

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_blend.hh"
+#include "eevee_bodies.hh"
 #include "eevee_frame.hh"
 #include "eevee_renderbuffers.hh"
 
 namespace gnomon::eevee {
 
 /**
- * Surfaces that transmit light. They read a copy of the picture without them; so one of them is not seen through
- * another: decision 0019. Internal to the engine.
+ * Surfaces that transmit light. They trace rays through each other, and read a copy of the picture without them:
+ * decisions 0019 and 0040. Internal to the engine.
  */
 class Transmission {
  public:
   Transmission(draw::ObjectBuffer &objects, const RenderBuffers &buffers);
-  /** Create the copy, with mip levels if a surface \a is_rough. */
-  void make(const draw::Viewport &viewport, bool is_rough);
-  /** Destroy the copy. */
+  /** Create the copies, with mip levels if a surface \a is_rough. */
+  void make(draw::Viewport &viewport, bool is_rough);
+  /** Take the surfaces through which others are seen, and the background. \pre make was called */
+  void update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
+              const Settings &settings, const SceneWorld &world);
+  /** Destroy the copies and the surfaces. */
   void free();
   /** Remove all calls. */
   void clear();
@@ -46,6 +51,8 @@ class Transmission {
  private:
   const RenderBuffers &buffers_;
   gpu::Texture behind_;
+  gpu::Texture behind_depth_;
+  Bodies bodies_;
   gpu::Sampler sampler_;
   draw::Pass depth_pass_;
   draw::Pass pass_;

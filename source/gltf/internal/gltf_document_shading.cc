@@ -211,7 +211,10 @@ void read_material(const Place &place, const JsonValue &value, Model::Material &
                       }},
                Member{"extras", [&](const Place &at, const JsonValue &extras) {
                         if (extras.is_object()) {
-                          read_members(at, extras, into("gnomon_surface", material.surface_uri));
+                          read_members(at, extras, into("gnomon_surface", material.surface_uri),
+                                       Member{"gnomon_thickness", [&](const Place &in, const JsonValue &thickness) {
+                                                material.own_thickness = number_at(in, thickness);
+                                              }});
                         }
                       }});
   if (specular_glossiness) {

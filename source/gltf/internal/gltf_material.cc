@@ -147,7 +147,8 @@ class MaterialReader {
   void read_transmission()
   {
     result_.transmission = clamped("transmissionFactor", source_.transmission, 1.0);
-    result_.thickness = clamped("thicknessFactor", source_.thickness, large);
+    result_.thickness = source_.own_thickness ? clamped("gnomon_thickness", *source_.own_thickness, large)
+                                              : clamped("thicknessFactor", source_.thickness, large);
     result_.attenuation_color = clamped("attenuationColor", vec3(source_.attenuation_color), 1.0);
     if (!source_.attenuation_distance) {
       return;

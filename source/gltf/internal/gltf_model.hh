@@ -158,6 +158,8 @@ struct Model {
     std::string name;
     /** The extra gnomon_surface: a URI of a surface function; empty if absent. */
     std::string surface_uri;
+    /** The extra gnomon_thickness, m, which replaces that of KHR_materials_volume. */
+    std::optional<double> own_thickness;
     std::array<double, 4> base_color{1.0, 1.0, 1.0, 1.0};
     TextureSlot base_color_texture;
     TextureSlot metallic_roughness_texture;

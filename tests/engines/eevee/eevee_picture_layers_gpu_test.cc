@@ -67,7 +67,7 @@ class PictureLayersGpuTest : public test::GpuDeviceTest {
   {
     const auto glass = test::add_material(scene, glm::vec3(0.4F));
     scene.edit(glass, [](scene::Material &material) {
-      material.emissive = {0.0F, 0.3F, 0.0F};
+      material.emissive = {0.0F, 0.4F, 0.0F};
       material.alpha_mode = scene::AlphaMode::Blend;
       material.alpha = 0.4F;
       material.sheen_color = glm::vec3(0.7F);

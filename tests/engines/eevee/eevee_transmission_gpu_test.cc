@@ -3,6 +3,8 @@
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 
+#include "render_world.hh"
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <gtest/gtest.h>
@@ -111,8 +113,8 @@ TEST_F(TransmissionGpuTest, AbsorptionIsBeerLambertsOverTheWayInTheScaledObject)
 {
   const glm::vec3 radiance(1.0F, 0.5F, 0.25F);
   set_ground({{radiance, radiance, radiance, radiance}});
-  // Along the plate's normal, its third axis is the scale of the way.
-  add_plate(at_height(1.0, {2, 2, 3}));
+  // Along the plate's normal, its third axis is the scale of the way. The ground is farther than that.
+  add_plate(at_height(3.5, {2, 2, 3}));
   for (const float roughness : {0.0F, 0.5F}) {
     for (const float thickness : {0.0F, 0.2F, 1.0F}) {
       edit([&](scene::Material &value) {
@@ -130,6 +132,10 @@ TEST_F(TransmissionGpuTest, AbsorptionIsBeerLambertsOverTheWayInTheScaledObject)
       test::expect_near(glm::vec3(render().middle()), expected, 2e-3F * expected.b);
     }
   }
+  // A way ends at an opaque surface.
+  edit([](scene::Material &value) { value.thickness = 1e6F; });
+  const glm::vec3 left(std::pow(0.25F, 7.0F), std::pow(0.5F, 7.0F), 1.0F);
+  test::expect_near(glm::vec3(render().middle()), radiance * glm::vec3(1.0F, 0.5F, 0.75F) * left, 2e-3F);
 }
 
 TEST_F(TransmissionGpuTest, AThickPlateShowsWhatIsBehindTheEndOfTheRefractedRay)
@@ -215,6 +221,127 @@ TEST_F(TransmissionGpuTest, ASurfaceFunctionsRoughnessBlursAsTheMaterialsDoes)
   EXPECT_LE(largest_difference(rough, picture_with(0.0F, "result.roughness = 0.7;")), 1e-5);
   // Read from the material's storage block, which has zeros in invocations outside of triangles.
   EXPECT_LE(largest_difference(rough, picture_with(0.7F, "result.base_color *= 1.0;")), 1e-5);
+}
+
+/** A sphere of radius 1 with its normals. */
+scene::Handle<scene::Mesh> add_sphere_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
+{
+  constexpr int columns = 128;
+  constexpr int rows = 64;
+  scene::Mesh mesh;
+  for (int y = 0; y <= rows; y++) {
+    for (int x = 0; x <= columns; x++) {
+      const double polar = std::numbers::pi * y / rows;
+      const double azimuth = 2.0 * std::numbers::pi * x / columns;
+      mesh.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                                  std::cos(polar));
+      if (x < columns && y < rows) {
+        const auto first = std::uint32_t(y * (columns + 1) + x);
+        for (const std::uint32_t i : {0U, columns + 1U, columns + 2U, 0U, columns + 2U, 1U}) {
+          mesh.indices.push_back(first + i);
+        }
+      }
+    }
+  }
+  mesh.normals = mesh.positions;
+  mesh.material = material;
+  return scene.add(std::move(mesh));
+}
+
+/** The direction behind a sphere of radius 1 around the origin, by Snell's law; with the ray's own for an index of 1.
+ */
+glm::dvec3 behind_sphere(const glm::dvec3 &eye, const glm::dvec3 &ray, double ior)
+{
+  const double along = -glm::dot(eye, ray);
+  const double half_chord = std::sqrt(1.0 - glm::dot(eye, eye) + along * along);
+  const glm::dvec3 entry = eye + (along - half_chord) * ray;
+  const glm::dvec3 inside = glm::refract(ray, entry, 1.0 / ior);
+  const glm::dvec3 exit = entry - 2.0 * glm::dot(entry, inside) * inside;
+  return glm::refract(inside, -exit, ior);
+}
+
+TEST_F(TransmissionGpuTest, ASphereRefractsAtBothOfItsSurfaces)
+{
+  // The radiance of the world is its direction.
+  scene::WorldPicture picture{256, 128, {}};
+  for (int y = 0; y < picture.height; y++) {
+    for (int x = 0; x < picture.width; x++) {
+      const glm::dvec3 v = render_scene::direction_of((x + 0.5) / picture.width, 1.0 - (y + 0.5) / picture.height);
+      picture.texels.emplace_back(0.5 + 0.5 * v);
+    }
+  }
+  scene.set_world(scene::World{.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))});
+  test::remove_objects(scene);
+  test::add_object(scene, add_sphere_mesh(scene, glass), glm::dmat4(1));
+  Settings settings;
+  settings.background.kind = Background::Kind::World;
+  camera = test::camera_at({1, -2, 5}, {0, 0, 0}, 0.42F);
+  const glm::dmat4 world_from_camera = camera.world_from_camera;
+  const glm::dvec3 eye(world_from_camera[3]);
+  for (const float ior : {1.1F, 1.5F, 2.4F}) {
+    edit([&](scene::Material &value) {
+      value.ior = ior;
+      value.thickness = 1.0F;
+    });
+    const Picture rendered = render(settings);
+    for (const glm::ivec2 pixel : {glm::ivec2(12, 12), glm::ivec2(8, 14), glm::ivec2(16, 6), glm::ivec2(4, 12)}) {
+      SCOPED_TRACE(::testing::Message() << "ior " << ior << ", pixel " << pixel.x << " " << pixel.y);
+      const glm::dvec2 ndc = (2.0 * glm::dvec2(pixel) + 1.0) / double(square_size_px.x) - 1.0;
+      const glm::dvec3 ray =
+          glm::normalize(glm::dvec3(world_from_camera * glm::dvec4(std::tan(0.21) * ndc, -1.0, 0.0)));
+      const glm::dvec3 expected = behind_sphere(eye, ray, double(ior));
+      // Chords of the sphere's facets are up to 6e-4 below it.
+      test::expect_near(glm::vec3(rendered.at(pixel.x, pixel.y)), glm::vec3(0.5 + 0.5 * expected), 3e-3F);
+    }
+  }
+}
+
+TEST_F(TransmissionGpuTest, ABodyIsSeenThroughAnotherAndWhatIsBehindTheGroundIsNot)
+{
+  set_ground({{glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F)}});
+  const glm::vec3 tint(0.8F, 0.6F, 0.4F);
+  const auto pane = test::add_material(scene, tint);
+  scene.edit(pane, [](scene::Material &value) {
+    value.transmission = 1.0F;
+    value.roughness = 0.0F;
+    value.ior = 1.0F;
+  });
+  const auto pane_mesh = test::add_square_mesh(scene, pane);
+  add_plate(at_height(2.0));
+  test::add_object(scene, pane_mesh, at_height(1.0));
+  test::add_object(scene, pane_mesh, at_height(-1.0));
+  for (const int sample_count : {1, 4}) {
+    test::expect_near(glm::vec3(render({.sample_count = sample_count}).middle()), 0.5F * tint, 1e-5F);
+  }
+  // A box has two surfaces, and absorbs over the way between them, which is 1 m.
+  test::remove_objects(scene);
+  test::add_object(scene, ground, glm::scale(glm::dmat4(1), glm::dvec3(half_size)));
+  add_plate(at_height(2.0));
+  test::add_object(scene, test::add_box_mesh(scene, pane), at_height(1.0, {2, 2, 0.5}));
+  scene.edit(pane, [](scene::Material &value) {
+    value.ior = 1.5F;
+    value.thickness = 0.1F;
+    value.attenuation_distance = 1.0F;
+    value.attenuation_color = {0.5F, 0.25F, 1.0F};
+  });
+  test::expect_near(glm::vec3(render().middle()), 0.5F * tint * tint * glm::vec3(0.5F, 0.25F, 1.0F), 1e-3F);
+}
+
+TEST_F(TransmissionGpuTest, LightIsReflectedTotallyBeyondTheCriticalAngle)
+{
+  set_ground({{glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F)}});
+  // Through the top of a tall box, its sides are met at more than 48° from their normals: arcsin(1 / 1.5) is 42°.
+  test::add_object(scene, test::add_box_mesh(scene, glass), at_height(1.5, {0.5, 0.5, 1.5}));
+  camera = test::camera_at({1.5F, 0, 6}, {-0.4F, 0, 3}, 0.02F);
+  const auto middle_with = [&](float ior) {
+    edit([&](scene::Material &value) {
+      value.ior = ior;
+      value.thickness = 1.0F;
+    });
+    return glm::vec3(render().middle());
+  };
+  test::expect_near(middle_with(1.5F), glm::vec3(0.0F), 0.0F);
+  test::expect_near(middle_with(1.0F), glm::vec3(0.5F), 1e-5F);
 }
 
 TEST_F(TransmissionGpuTest, TransmissionTakesLightFromTheDiffusePartAndReflectionFromBoth)
@@ -332,6 +459,13 @@ TEST_F(TransmissionGpuTest, ShadowsAreAsDarkAsThePartThatDoesNotPass)
       << "the mesh has no uvs";
   scene.edit(test::handle_at(scene.meshes(), 1), [](scene::Mesh &mesh) { mesh.uvs.assign(4, glm::vec2(0.5F)); });
   EXPECT_EQ(shadow_with([](scene::Material & /*value*/) {}), 0.0F) << "a texture's part is not known to shadows";
+  EXPECT_EQ(shadow_with([](scene::Material &value) {
+              value.transmission_texture = {};
+              value.thickness = 0.1F;
+            }),
+            0.0F)
+      << "a body focuses light elsewhere";
+  EXPECT_GT(shadow_with([](scene::Material &value) { value.thickness = 0.0F; }), 0.2F);
 }
 
 TEST_F(TransmissionGpuTest, HostileValuesStayFinite)

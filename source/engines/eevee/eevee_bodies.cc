@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_bodies.hh"
+
+#include "eevee_background.hh"
+#include "eevee_bodies_shared.h"
+#include "eevee_caster_tree.hh"
+#include "eevee_resource_report.hh"
+#include "render_materials.hh"
+
+#include <fmt/format.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace gnomon::eevee {
+
+namespace {
+
+/** World space. */
+struct Triangle {
+  std::array<glm::vec3, 3> corners;
+  std::array<glm::vec3, 3> normals;
+  std::uint32_t material;
+};
+
+void add_triangles(const render_scene::RenderScene &render_scene, draw::ObjectIndex object,
+                   std::vector<Triangle> &triangles)
+{
+  const scene::Scene &scene = render_scene.scene();
+  const scene::Mesh &mesh = scene.meshes()[render_scene.object(object).mesh];
+  if (mesh.topology != scene::Topology::Triangles || mesh.positions.empty() || render_scene::is_masked(scene, mesh)) {
+    return;
+  }
+  const glm::mat4 &world_from_object = render_scene.objects().world_from_object(object);
+  const glm::mat3 normals_ws = draw::normal_matrix(world_from_object);
+  const bool is_mirrored = draw::is_mirrored(world_from_object);
+  const std::uint32_t material = render_scene::MaterialTable::place_of(scene, mesh.material);
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    Triangle &triangle = triangles.emplace_back();
+    triangle.material = material;
+    for (std::size_t k = 0; k < 3; k++) {
+      const std::uint32_t vertex = mesh.indices[i + (is_mirrored && k > 0 ? 3 - k : k)];
+      triangle.corners[k] = glm::vec3(world_from_object * glm::vec4(mesh.positions[vertex], 1.0F));
+      const glm::vec3 normal = vertex < mesh.normals.size() ? normals_ws * mesh.normals[vertex] : glm::vec3(0.0F);
+      const float length = glm::length(normal);
+      triangle.normals[k] = length > 0.0F ? normal / length : glm::vec3(0.0F);
+    }
+  }
+}
+
+/** \see eevee_bodies_shared.h */
+void write(const BoxTree &tree, std::span<const Triangle> triangles, std::vector<glm::vec4> &texels)
+{
+  const std::span<const BoxTree::Node> nodes = tree.nodes();
+  std::vector<std::uint32_t> ends(nodes.size(), std::uint32_t(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); i++) {
+    const BoxTree::Node &node = nodes[i];
+    if (node.count == 0) {
+      ends[i + 1] = node.next;
+      ends[node.next] = ends[i];
+    }
+    const std::uint32_t leaf = node.count > 0 ? node.next * BODY_LEAF + node.count : 0;
+    texels.emplace_back(node.box.min, float(ends[i]));
+    texels.emplace_back(node.box.max, float(leaf));
+  }
+  for (const std::uint32_t item : tree.items()) {
+    const Triangle &triangle = triangles[item];
+    texels.emplace_back(triangle.corners[0], float(triangle.material));
+    texels.emplace_back(triangle.corners[1] - triangle.corners[0], 0.0F);
+    texels.emplace_back(triangle.corners[2] - triangle.corners[0], 0.0F);
+    for (const glm::vec3 &normal : triangle.normals) {
+      texels.emplace_back(normal, 0.0F);
+    }
+  }
+}
+
+}  // namespace
+
+void Bodies::update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
+                    const Settings &settings, const SceneWorld &world, const draw::TextureBinding &stand_in)
+{
+  gpu::Device &device = scene.device();
+  const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;
+  picture_binding_ =
+      world.picture() ? draw::TextureBinding{world.picture().id(), world.picture_sampler().id()} : stand_in;
+  const Key key{scene.objects().revision(),
+                scene.passes_revision(),
+                scene.content_revision(),
+                device.loss_count(),
+                {background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}}};
+  if (texels_ && key_ == key) {
+    return;
+  }
+  key_ = key;
+  std::vector<Triangle> triangles;
+  for (const TransmissiveObject &one : objects) {
+    if (!one.is_blended) {
+      add_triangles(scene, one.object, triangles);
+    }
+  }
+  // A tree has fewer nodes than items.
+  const auto texels_max = std::size_t(device.limits().buffer_texels_max) - BODY_HEAD_TEXELS;
+  const std::size_t triangles_max =
+      std::min(texels_max / (BODY_TRIANGLE_TEXELS + BODY_NODE_TEXELS), std::size_t(BODY_TRIANGLE_MAX));
+  left_out_ = triangles.size() > triangles_max ? triangles.size() : 0;
+  if (left_out_ > 0) {
+    triangles.clear();
+  }
+  triangle_count_ = triangles.size();
+  std::vector<scene::Bounds> boxes;
+  boxes.reserve(triangles.size());
+  for (const Triangle &triangle : triangles) {
+    const auto &[a, b, c] = triangle.corners;
+    boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
+  }
+  const BoxTree tree(boxes);
+  std::vector<glm::vec4> texels(key.background.begin(), key.background.end());
+  texels[1].x = float(tree.nodes().size());
+  write(tree, triangles, texels);
+  const int width = std::min(int(std::bit_ceil(texels.size())), device.limits().buffer_texels_max);
+  texels.resize(std::size_t(width));
+  if (!texels_ || texels_.desc().width != width) {
+    texels_ = device.create_texture(
+        {.name = "bodies", .kind = gpu::TextureKind::Buffer, .format = gpu::Format::RGBA32F, .width = width});
+  }
+  if (!sampler_) {
+    sampler_ = device.create_sampler({.name = "bodies_sampler"});
+  }
+  device.upload(texels_, 0, std::as_bytes(std::span(texels)));
+  texels_binding_ = {texels_.id(), sampler_.id()};
+}
+
+void Bodies::free()
+{
+  texels_ = {};
+  triangle_count_ = left_out_ = 0;
+}
+
+void Bodies::bind(draw::ShadingGroup &group) const
+{
+  group.bind_texture_ref("bodies", &texels_binding_);
+  group.bind_texture_ref("world_picture", &picture_binding_);
+}
+
+void Bodies::report(ResourceReport &report) const
+{
+  const std::string purpose =
+      left_out_ > 0 ? fmt::format("the background alone: {} triangles exceed the limit of the device", left_out_)
+                    : fmt::format("{} triangles of surfaces that transmit light", triangle_count_);
+  report.add_target(texels_, "bodies", purpose, report.why_no_feature(Feature::Transmission));
+}
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_blend.hh"
+#include "eevee_world.hh"
+
+#include "draw_pass.hh"
+
+#include <array>
+#include <span>
+
+namespace gnomon::eevee {
+
+/**
+ * The triangles of surfaces that transmit light, through which the lit program of transmission traces rays, and the
+ * background that these see. Internal to the engine.
+ */
+class Bodies {
+ public:
+  /**
+   * Take the triangles of those \a objects that are not blended. Left out are masked ones and those in buffers of a
+   * host, and all of them where they exceed the limits of the device. \a stand_in: bound instead of the background's
+   * picture where there is none
+   */
+  void update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
+              const Settings &settings, const SceneWorld &world, const draw::TextureBinding &stand_in);
+  void free();
+  void bind(draw::ShadingGroup &group) const;
+  void report(ResourceReport &report) const;
+
+ private:
+  /** Inputs from which `texels_` was made. */
+  struct Key {
+    std::uint64_t objects = 0;
+    std::uint64_t passes = 0;
+    std::uint64_t content = 0;
+    /** gpu::Device::loss_count */
+    std::uint64_t losses = 0;
+    std::array<glm::vec4, 2> background{};
+
+    bool operator==(const Key &) const = default;
+  };
+  Key key_;
+  gpu::Texture texels_;
+  gpu::Sampler sampler_;
+  /** Read by recorded passes, which may outlive a texture. */
+  draw::TextureBinding texels_binding_;
+  draw::TextureBinding picture_binding_;
+  std::size_t triangle_count_ = 0;
+  /** More triangles than the device can hold; 0: all are held. */
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace gnomon::eevee
