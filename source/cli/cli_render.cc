@@ -377,10 +377,15 @@ PreparedScene prepare(const RenderOptions &options, FrameSequence &frames, scene
   frames.choose_animations(scene);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options);
-  const bool is_default_studio = light_by_world(scene, camera, options.world);
-  constexpr glm::vec3 light_grey(0.6F);
-  const std::optional<glm::vec3> own = is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt;
-  return {camera, background_of(options.background, own)};
+  using Kind = eevee::Background::Kind;
+  eevee::Background usual;
+  if (options.world.world.empty() && scene.world()) {
+    usual.kind = Kind::World;
+  }
+  if (light_by_world(scene, camera, options.world) && options.is_png()) {
+    usual = {Kind::Color, glm::vec3(0.6F)};
+  }
+  return {camera, background_of(options.background, usual)};
 }
 
 /** Prints the results of a picture that was asked for as a whole. */

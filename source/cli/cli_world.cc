@@ -50,7 +50,8 @@ void add_background_option(CLI::App &command, std::string &background)
   command.add_option(
       "--background", background,
       "Background of pixels without a surface: none (transparent: the file has alpha), world, or a radiance R,G,B "
-      "(default: none; light grey in a PNG that the default studio lights)");
+      "(default: the scene's own world; with --world, or without a world, none; light grey in a PNG that the default "
+      "studio lights)");
 }
 
 std::optional<glm::vec3> parse_color(const std::string &text)
@@ -171,11 +172,11 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
   return is_default_studio;
 }
 
-eevee::Background background_of(const std::string &option, std::optional<glm::vec3> default_color)
+eevee::Background background_of(const std::string &option, const eevee::Background &fallback)
 {
   using Kind = eevee::Background::Kind;
   if (option.empty()) {
-    return default_color ? eevee::Background{Kind::Color, *default_color} : eevee::Background();
+    return fallback;
   }
   if (option == "none" || option == "world") {
     return {option == "none" ? Kind::None : Kind::World};

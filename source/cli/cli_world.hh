@@ -66,8 +66,8 @@ void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOpti
  */
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options);
 
-/** The background of `--background`. \a default_color: if \a option is empty; may be empty. \throws UsageError */
-[[nodiscard]] eevee::Background background_of(const std::string &option, std::optional<glm::vec3> default_color);
+/** The background of `--background`. \a fallback: if \a option is empty. \throws UsageError */
+[[nodiscard]] eevee::Background background_of(const std::string &option, const eevee::Background &fallback);
 
 /** Parses "R,G,B" with finite numbers of at least 0. Returns an empty value for any other text. */
 [[nodiscard]] std::optional<glm::vec3> parse_color(const std::string &text);

@@ -86,6 +86,26 @@ TEST_F(CliRenderTest, APictureHasAlphaUnlessItHasABackground)
   EXPECT_EQ(run("compare a.exr black.exr --max-rmse 1e-7").status, 0) << "colours are multiplied by alpha";
 }
 
+TEST_F(CliRenderTest, AScenesOwnWorldIsSeenBehindItAndAnotherOnlyLights)
+{
+  write("scene.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"extras": {"gnomon_world": [0.25, 0.5, 1]}}]})");
+  const auto pixel = [&](const std::string &options) {
+    EXPECT_EQ(run("render scene.gltf -o out.exr --size 4x4 --samples 2 " + options).status, 0) << options;
+    const auto input = OIIO::ImageInput::open((folder / "out.exr").string());
+    std::vector<float> values(std::size_t(16) * std::size_t(input->spec().nchannels));
+    EXPECT_TRUE(input->read_image(0, 0, 0, input->spec().nchannels, OIIO::TypeDesc::FLOAT, values.data()));
+    values.resize(std::size_t(input->spec().nchannels));
+    return values;
+  };
+  const std::vector<float> transparent(4, 0.0F);
+  EXPECT_EQ(pixel(""), (std::vector<float>{0.25F, 0.5F, 1.0F}));
+  EXPECT_EQ(pixel("--world-strength 2"), (std::vector<float>{0.5F, 1.0F, 2.0F}));
+  EXPECT_EQ(pixel("--background none"), transparent);
+  EXPECT_EQ(pixel("--world 1,2,3"), transparent);
+  EXPECT_EQ(pixel("--world 1,2,3 --background world"), (std::vector<float>{1.0F, 2.0F, 3.0F}));
+  EXPECT_EQ(pixel("--world none"), transparent);
+}
+
 TEST_F(CliRenderTest, AShadowsPictureIsGreyAndColouredAndItsExrIsInMetres)
 {
   const std::string render = "render " + example("plaza") + " --size 64x36 --shadow-size 64 --debug shadow:POINT -o ";
