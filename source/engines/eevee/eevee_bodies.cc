@@ -30,24 +30,37 @@ struct Triangle {
   std::uint32_t material;
 };
 
-void add_triangles(const render_scene::RenderScene &render_scene, draw::ObjectIndex object,
-                   std::vector<Triangle> &triangles)
+std::vector<Bodies::Body> bodies_of(const render_scene::RenderScene &render_scene,
+                                    std::span<const TransmissiveObject> objects)
 {
   const scene::Scene &scene = render_scene.scene();
-  const scene::Mesh &mesh = scene.meshes()[render_scene.object(object).mesh];
-  if (mesh.topology != scene::Topology::Triangles || mesh.positions.empty() || render_scene::is_masked(scene, mesh)) {
-    return;
+  std::vector<Bodies::Body> bodies;
+  for (const TransmissiveObject &one : objects) {
+    const scene::Handle<scene::Mesh> handle = render_scene.object(one.object).mesh;
+    const scene::Mesh &mesh = scene.meshes()[handle];
+    if (one.is_blended || mesh.topology != scene::Topology::Triangles || mesh.positions.empty() ||
+        render_scene::is_masked(scene, mesh)) {
+      continue;
+    }
+    bodies.push_back({.mesh = handle,
+                      .shape = scene.meshes().revision(handle, scene::Mesh::Aspect::Shape),
+                      .material = render_scene::MaterialTable::place_of(scene, mesh.material),
+                      .world_from_object = render_scene.objects().world_from_object(one.object)});
   }
-  const glm::mat4 &world_from_object = render_scene.objects().world_from_object(object);
-  const glm::mat3 normals_ws = draw::normal_matrix(world_from_object);
-  const bool is_mirrored = draw::is_mirrored(world_from_object);
-  const std::uint32_t material = render_scene::MaterialTable::place_of(scene, mesh.material);
+  return bodies;
+}
+
+void add_triangles(const scene::Scene &scene, const Bodies::Body &body, std::vector<Triangle> &triangles)
+{
+  const scene::Mesh &mesh = scene.meshes()[body.mesh];
+  const glm::mat3 normals_ws = draw::normal_matrix(body.world_from_object);
+  const bool is_mirrored = draw::is_mirrored(body.world_from_object);
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     Triangle &triangle = triangles.emplace_back();
-    triangle.material = material;
+    triangle.material = body.material;
     for (std::size_t k = 0; k < 3; k++) {
       const std::uint32_t vertex = mesh.indices[i + (is_mirrored && k > 0 ? 3 - k : k)];
-      triangle.corners[k] = glm::vec3(world_from_object * glm::vec4(mesh.positions[vertex], 1.0F));
+      triangle.corners[k] = glm::vec3(body.world_from_object * glm::vec4(mesh.positions[vertex], 1.0F));
       const glm::vec3 normal = vertex < mesh.normals.size() ? normals_ws * mesh.normals[vertex] : glm::vec3(0.0F);
       const float length = glm::length(normal);
       triangle.normals[k] = length > 0.0F ? normal / length : glm::vec3(0.0F);
@@ -90,20 +103,16 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
   const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;
   picture_binding_ =
       world.picture() ? draw::TextureBinding{world.picture().id(), world.picture_sampler().id()} : stand_in;
-  const Key key{scene.objects().revision(),
-                scene.passes_revision(),
-                scene.content_revision(),
-                device.loss_count(),
-                {background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}}};
+  Key key{bodies_of(scene, objects),
+          device.loss_count(),
+          {background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}}};
   if (texels_ && key_ == key) {
     return;
   }
-  key_ = key;
+  key_ = std::move(key);
   std::vector<Triangle> triangles;
-  for (const TransmissiveObject &one : objects) {
-    if (!one.is_blended) {
-      add_triangles(scene, one.object, triangles);
-    }
+  for (const Body &body : key_.bodies) {
+    add_triangles(scene.scene(), body, triangles);
   }
   // A tree has fewer nodes than items.
   const auto texels_max = std::size_t(device.limits().buffer_texels_max) - BODY_HEAD_TEXELS;
@@ -121,7 +130,7 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
     boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
   }
   const BoxTree tree(boxes);
-  std::vector<glm::vec4> texels(key.background.begin(), key.background.end());
+  std::vector<glm::vec4> texels(key_.background.begin(), key_.background.end());
   texels[1].x = float(tree.nodes().size());
   write(tree, triangles, texels);
   const int width = std::min(int(std::bit_ceil(texels.size())), device.limits().buffer_texels_max);

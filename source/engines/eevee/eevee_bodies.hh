@@ -8,6 +8,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace gnomon::eevee {
 
@@ -27,13 +28,28 @@ class Bodies {
   void free();
   void bind(draw::ShadingGroup &group) const;
   void report(ResourceReport &report) const;
+  /** The triangles that the device cannot hold, so that none is traced; 0: all are. */
+  [[nodiscard]] std::size_t left_out() const
+  {
+    return left_out_;
+  }
+
+  /** An object whose triangles are traced. */
+  struct Body {
+    scene::Handle<scene::Mesh> mesh;
+    /** Of the mesh's shape. */
+    scene::Revision shape = 0;
+    /** In render_scene::MaterialTable. */
+    std::uint32_t material = 0;
+    glm::mat4 world_from_object{1.0F};
+
+    bool operator==(const Body &) const = default;
+  };
 
  private:
   /** Inputs from which `texels_` was made. */
   struct Key {
-    std::uint64_t objects = 0;
-    std::uint64_t passes = 0;
-    std::uint64_t content = 0;
+    std::vector<Body> bodies;
     /** gpu::Device::loss_count */
     std::uint64_t losses = 0;
     std::array<glm::vec4, 2> background{};
@@ -47,7 +63,6 @@ class Bodies {
   draw::TextureBinding texels_binding_;
   draw::TextureBinding picture_binding_;
   std::size_t triangle_count_ = 0;
-  /** More triangles than the device can hold; 0: all are held. */
   std::size_t left_out_ = 0;
 };
 

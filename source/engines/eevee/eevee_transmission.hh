@@ -27,6 +27,10 @@ class Transmission {
   void bind(draw::ShadingGroup &group) const;
 
   void report(ResourceReport &report) const;
+  [[nodiscard]] const Bodies &bodies() const
+  {
+    return bodies_;
+  }
   /** Copy of the radiance before these surfaces are drawn. Empty until one is seen: then nothing reads it. */
   [[nodiscard]] const gpu::Texture &behind() const
   {
