@@ -327,6 +327,40 @@ TEST_F(TransmissionGpuTest, ABodyIsSeenThroughAnotherAndWhatIsBehindTheGroundIsN
   test::expect_near(glm::vec3(render().middle()), 0.5F * tint * tint * glm::vec3(0.5F, 0.25F, 1.0F), 1e-3F);
 }
 
+TEST_F(TransmissionGpuTest, EditedBodiesAreTracedAsTheyAre)
+{
+  set_ground({{glm::vec3(0.9F, 0, 0), glm::vec3(0, 0.9F, 0), glm::vec3(0, 0, 0.9F), glm::vec3(0.9F)}});
+  edit([](scene::Material &value) {
+    value.ior = 1.5F;
+    value.thickness = 1.0F;
+  });
+  const auto mesh = add_sphere_mesh(scene, glass);
+  const auto body = test::add_object(scene, mesh, at_height(2.0, glm::dvec3(0.7)));
+  const auto behind = test::add_object(scene, mesh, at_height(0.5, glm::dvec3(0.4)));
+  Renderer renderer(*device, scene, square_size_px, {});
+  Picture last = renderer.picture(camera);
+  const auto check = [&](const std::string &edit_name) {
+    const Picture live = renderer.picture(camera);
+    EXPECT_EQ(live.pixels, render().pixels) << edit_name;
+    EXPECT_GT(largest_difference(live, last), 0.01) << edit_name;
+    last = live;
+  };
+  scene.edit(behind, [&](scene::Node &node) { node.parent_from_node = at_height(0.5, glm::dvec3(0.6, 0.3, 0.3)); });
+  check("the farther one is scaled");
+  scene.edit(mesh, [](scene::Mesh &value) {
+    for (glm::vec3 &position : value.positions) {
+      position.z *= 0.5F;
+    }
+  });
+  check("vertices");
+  edit([](scene::Material &value) { value.ior = 1.2F; });
+  check("index");
+  scene.edit(behind, [](scene::Node &node) { node.is_visible = false; });
+  check("hidden");
+  scene.remove(body);
+  check("removed");
+}
+
 TEST_F(TransmissionGpuTest, LightIsReflectedTotallyBeyondTheCriticalAngle)
 {
   set_ground({{glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F)}});
