@@ -46,6 +46,18 @@ struct BodyHit {
   bool is_front;
 };
 
+/** Whether the clip planes of the view leave a point. */
+bool is_kept(vec3 position_ws)
+{
+  vec4 place = view.clip_from_world * vec4(position_ws, 1.0);
+  place.xy = 0.5 * (place.xy + place.w) * vec2(textureSize(behind_depth, 0));
+  bool result = true;
+  for (int i = 0; i < 6; i++) {
+    result = result && dot(view.clip_planes[i], place) >= 0.0;
+  }
+  return result;
+}
+
 BodyHit trace_bodies(Ray ray)
 {
   // The rounding of the origin.
@@ -70,7 +82,7 @@ BodyHit trace_bodies(Ray ray)
     float enter = max(max(near.x, near.y), max(near.z, 0.0));
     float leave = min(min(far.x, far.y), min(far.z, nearest)) * 1.000001;
     if (enter > leave) {
-      node = int(low.w);
+      node = max(int(low.w), node + 1);
       continue;
     }
     int leaf = int(high.w);
@@ -90,7 +102,7 @@ BodyHit trace_bodies(Ray ray)
       // The margin keeps rays from passing between triangles that share an edge.
       bool is_met = determinant != 0.0 && min(u, v) >= -1e-5 && u + v <= 1.00001 && t < nearest;
       bool is_from_front = determinant > 0.0;
-      if (is_met && t > (is_from_front == ray.left_front ? start_m : 0.0)) {
+      if (is_met && t > (is_from_front == ray.left_front ? start_m : 0.0) && is_kept(ray.origin + t * ray.direction)) {
         nearest = t;
         hit = texel;
         at = vec2(u, v);
@@ -201,7 +213,8 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
     float part = whole * (i == steps ? 1.0 : (float(i) - offset) / float(steps));
     float seen = seen_at(path, part);
     float next_gap = path.start.z + part * path.way.z - seen;
-    if (next_gap >= 0.0) {
+    // Rounding at the far end is no surface.
+    if (next_gap >= 0.0 || seen <= 0.0) {
       closing = (gap - next_gap) / max(part - last, 1e-20);
       // The plane of what was seen last meets the ray where the picture shows something else.
       is_guess = seen > 0.0 && closing > 0.0 && part + next_gap / closing < 1.0;
@@ -249,7 +262,9 @@ vec2 random_pair(uint number)
 {
   uint pixel = mixed_bits(uint(gl_FragCoord.x) + 65536u * uint(gl_FragCoord.y) + 7919u * number);
   uint other = mixed_bits(pixel ^ floatBitsToUint(view.mask_shift));
-  return vec2(fract(to_unit(pixel) + view.mask_shift), to_unit(other));
+  // Of two surfaces on a way, one alone is spread evenly over the samples: both by the same shift would be one number.
+  bool is_spread = number % 64u == 0u;
+  return vec2(is_spread ? fract(to_unit(pixel) + view.mask_shift) : to_unit(mixed_bits(other + 0x9E3779B9u)), to_unit(other));
 }
 
 /** A microfacet that is visible from the unit vector \a view_ws (Heitz 2018). \a uv: in [0, 1). */

@@ -113,13 +113,30 @@ float refracted(inout Way way, vec3 normal_ws, bool is_front, float ior, float r
   return cos_l <= 0.0 ? 0.0 : alpha > ALPHA_MIN ? 2.0 * cos_l * ggx_masking_over_2cos(cos_l, alpha) : 1.0;
 }
 
-/** Radiance and alpha at the end of a way. \a slab_m: length of the way in a body whose back is not found. */
-vec4 radiance_behind(inout Way way, float slab_m, float level, bool has_samples)
+/** What a surface leaves of the light that passes it, apart from what it reflects, and how rough it is. */
+struct Passage {
+  vec3 left;
+  float roughness;
+};
+
+/** Of a surface behind the nearest one, by the factors of its material. A texture makes it less metallic than its factor, which is 1. */
+Passage passage_of(uint material)
+{
+  FullMaterialData full = full_materials[material];
+  float metallic = (full.inputs & INPUT_METALLIC_ROUGHNESS) != 0u ? 0.0 : full.metallic;
+  return Passage(layer_materials[material].transmission * (1.0 - metallic) * full.base_color, full.roughness);
+}
+
+/**
+ * Radiance and alpha at the end of a way. \a nearest: of the nearest surface, whose textures hold for the other surfaces of its material.
+ * \a slab_m: length of the way in a body whose back is not found.
+ */
+vec4 radiance_behind(inout Way way, Passage nearest, float slab_m, float level, bool has_samples)
 {
   vec2 size = vec2(textureSize(behind, 0));
   vec2 texco = gl_FragCoord.xy / size;
   float seen_depth = texelFetch(behind_depth, ivec2(gl_FragCoord.xy), 0).r;
-  float start = has_samples ? 0.9 * random_pair(0u).y : 0.0;
+  float start = has_samples ? 0.9 * random_pair(66u).y : 0.0;
   for (int i = 1; i <= BODY_SURFACES_MAX; i++) {
     BodyHit hit = trace_bodies(way.ray);
     bool is_slab = way.is_inside && (hit.distance_m >= NO_HIT || hit.is_front);
@@ -153,20 +170,23 @@ vec4 radiance_behind(inout Way way, float slab_m, float level, bool has_samples)
     FullMaterialData full = full_materials[hit.material];
     way.left *= way.is_inside ? beer_lambert(absorption, hit.distance_m) : vec3(1.0);
     way.ray.origin += hit.distance_m * way.ray.direction;
-    bool is_body = layer.thickness > 0.0;
+    bool is_nearest = hit.material == surface_material;
+    Passage passage = is_nearest ? nearest : passage_of(hit.material);
+    // The light has not entered where a texture of the thickness is 0.
+    bool is_body = layer.thickness > 0.0 && (hit.is_front || way.is_inside || !is_nearest);
     float cos_i = -dot(hit.normal_ws, way.ray.direction);
     float ratio = hit.is_front || !is_body ? 1.0 / layer.ior : layer.ior;
     float reflectance = reflection_scale(full, layer.ior) * dielectric_reflectance(cos_i, ratio);
 #ifdef USE_WORLD
     if (hit.is_front && reflectance > 0.01) {
       vec3 mirrored_ws = reflect(way.ray.direction, hit.normal_ws);
-      vec3 sky = world_radiance(mirrored_ws, full.roughness * full.roughness);
+      vec3 sky = world_radiance(mirrored_ws, passage.roughness * passage.roughness);
       way.mirrored += way.left * sky * (reflectance * sky_part(way.ray.origin, mirrored_ws, hit.normal_ws, true));
     }
 #endif
-    way.left *= (1.0 - reflectance) * layer.transmission * (1.0 - full.metallic) * full.base_color;
+    way.left *= (1.0 - reflectance) * passage.left;
     if (is_body) {
-      way.left *= refracted(way, hit.normal_ws, hit.is_front, layer.ior, has_samples ? full.roughness : 0.0, uint(i));
+      way.left *= refracted(way, hit.normal_ws, hit.is_front, layer.ior, has_samples ? passage.roughness : 0.0, uint(i));
       way.material = hit.material;
     }
     else {
@@ -217,7 +237,7 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
   }
   // Microfacets blur what is behind a body, over the samples.
   float level = is_body && has_samples ? 0.0 : transmission_level(roughness, surface_lens.z, float(textureSize(behind, 0).y));
-  result.behind = radiance_behind(way, slab_m, level, has_samples);
+  result.behind = radiance_behind(way, Passage(result.part * material.diffuse, roughness), slab_m, level, has_samples);
   result.passed = way.left;
   result.mirrored = way.mirrored;
   return result;

@@ -18,7 +18,7 @@ def thickness(positions, triangles):
         return chord or 0.0
     points = numpy.asarray(positions, numpy.float64)[numpy.unique(triangles)]
     spread = numpy.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    return ENDLESS if spread[2] > 1e-4 * spread[0] else 0.0
+    return ENDLESS if len(spread) > 2 and spread[2] > 1e-4 * spread[0] else 0.0
 
 
 def mean_chord(positions, triangles):

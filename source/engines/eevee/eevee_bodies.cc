@@ -31,15 +31,15 @@ struct Triangle {
 };
 
 std::vector<Bodies::Body> bodies_of(const render_scene::RenderScene &render_scene,
-                                    std::span<const TransmissiveObject> objects)
+                                    std::span<const TransmissiveObject> objects, const draw::ObjectSet &hidden)
 {
   const scene::Scene &scene = render_scene.scene();
   std::vector<Bodies::Body> bodies;
   for (const TransmissiveObject &one : objects) {
     const scene::Handle<scene::Mesh> handle = render_scene.object(one.object).mesh;
     const scene::Mesh &mesh = scene.meshes()[handle];
-    if (one.is_blended || mesh.topology != scene::Topology::Triangles || mesh.positions.empty() ||
-        render_scene::is_masked(scene, mesh)) {
+    if (one.is_blended || hidden.contains(one.object) || mesh.topology != scene::Topology::Triangles ||
+        mesh.positions.empty() || render_scene::is_masked(scene, mesh)) {
       continue;
     }
     bodies.push_back({.mesh = handle,
@@ -103,24 +103,28 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
   const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;
   picture_binding_ =
       world.picture() ? draw::TextureBinding{world.picture().id(), world.picture_sampler().id()} : stand_in;
-  Key key{bodies_of(scene, objects),
+  Key key{bodies_of(scene, objects, hidden),
           device.loss_count(),
           {background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}}};
   if (texels_ && key_ == key) {
     return;
   }
-  key_ = std::move(key);
-  std::vector<Triangle> triangles;
-  for (const Body &body : key_.bodies) {
-    add_triangles(scene.scene(), body, triangles);
+  key_.reset();
+  std::size_t count = 0;
+  for (const Body &body : key.bodies) {
+    count += scene.scene().meshes()[body.mesh].indices.size() / 3;
   }
   // A tree has fewer nodes than items.
   const auto texels_max = std::size_t(device.limits().buffer_texels_max) - BODY_HEAD_TEXELS;
   const std::size_t triangles_max =
       std::min(texels_max / (BODY_TRIANGLE_TEXELS + BODY_NODE_TEXELS), std::size_t(BODY_TRIANGLE_MAX));
-  left_out_ = triangles.size() > triangles_max ? triangles.size() : 0;
-  if (left_out_ > 0) {
-    triangles.clear();
+  left_out_ = count > triangles_max ? count : 0;
+  std::vector<Triangle> triangles;
+  if (left_out_ == 0) {
+    triangles.reserve(count);
+    for (const Body &body : key.bodies) {
+      add_triangles(scene.scene(), body, triangles);
+    }
   }
   triangle_count_ = triangles.size();
   std::vector<scene::Bounds> boxes;
@@ -130,7 +134,7 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
     boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
   }
   const BoxTree tree(boxes);
-  std::vector<glm::vec4> texels(key_.background.begin(), key_.background.end());
+  std::vector<glm::vec4> texels(key.background.begin(), key.background.end());
   texels[1].x = float(tree.nodes().size());
   write(tree, triangles, texels);
   const int width = std::min(int(std::bit_ceil(texels.size())), device.limits().buffer_texels_max);
@@ -144,6 +148,7 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
   }
   device.upload(texels_, 0, std::as_bytes(std::span(texels)));
   texels_binding_ = {texels_.id(), sampler_.id()};
+  key_ = std::move(key);
 }
 
 void Bodies::free()

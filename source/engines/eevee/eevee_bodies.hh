@@ -7,6 +7,7 @@
 #include "draw_pass.hh"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,12 +20,13 @@ namespace gnomon::eevee {
 class Bodies {
  public:
   /**
-   * Take the triangles of those \a objects that are not blended. Left out are masked ones and those in buffers of a
-   * host, and all of them where they exceed the limits of the device. \a stand_in: bound instead of the background's
-   * picture where there is none
+   * Take the triangles of those \a objects that are neither blended nor \a hidden. Left out are masked ones and those
+   * in buffers of a host, and all of them where they exceed the limits of the device. \a stand_in: bound instead of the
+   * background's picture where there is none
    */
   void update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
-              const Settings &settings, const SceneWorld &world, const draw::TextureBinding &stand_in);
+              const draw::ObjectSet &hidden, const Settings &settings, const SceneWorld &world,
+              const draw::TextureBinding &stand_in);
   void free();
   void bind(draw::ShadingGroup &group) const;
   void report(ResourceReport &report) const;
@@ -56,7 +58,8 @@ class Bodies {
 
     bool operator==(const Key &) const = default;
   };
-  Key key_;
+  /** Empty after an incomplete update. */
+  std::optional<Key> key_;
   gpu::Texture texels_;
   gpu::Sampler sampler_;
   /** Read by recorded passes, which may outlive a texture. */

@@ -56,9 +56,9 @@ class BoxTree {
 enum class RayHit : std::uint8_t { None, Front, Back };
 
 /**
- * The triangles of a scene's casters. Those of blended and transmissive materials are left out, as are those in buffers
- * of a host, which the CPU does not have. The texture of a masked material blocks the part of the rays that it covers,
- * in no particular places.
+ * The triangles of a scene's casters. Those with an open shadow (render_scene::has_open_shadow) are left out, as are
+ * those in buffers of a host, which the CPU does not have. The texture of a masked material blocks the part of the rays
+ * that it covers, in no particular places.
  */
 class CasterTree {
  public:

@@ -98,8 +98,9 @@ struct Data final : draw::EngineViewportData {
   /** Programs with and without clip planes are others. Call this before passes for \a view are recorded. */
   void follow_clip(const draw::View &view)
   {
-    is_recorded &= is_clipped == !view.clip_planes().empty();
+    is_recorded &= is_clipped == !view.clip_planes().empty() && (transmission.hidden() == view.hidden());
     is_clipped = !view.clip_planes().empty();
+    transmission.set_hidden(view.hidden());
   }
   /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;

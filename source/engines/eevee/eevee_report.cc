@@ -296,10 +296,9 @@ std::vector<std::string> limits_of(const Data &data)
                                  data.blend.ordered_count(), render_scene::blend_order_exact_max));
   }
   if (const std::size_t count = data.transmission.bodies().left_out(); count > 0) {
-    limits.push_back(
-        fmt::format("{} triangles transmit light: the device holds too few, so that light goes through the "
-                    "nearest surface alone",
-                    count));
+    limits.push_back(fmt::format(
+        "{} triangles transmit light, more than the device holds: light goes through the nearest surface alone",
+        count));
   }
   return limits;
 }

@@ -55,7 +55,7 @@ void Transmission::update(const render_scene::RenderScene &scene, std::span<cons
                           const Settings &settings, const SceneWorld &world)
 {
   if (behind_) {
-    bodies_.update(scene, objects, settings, world, {behind_.id(), sampler_.id()});
+    bodies_.update(scene, objects, hidden_, settings, world, {behind_.id(), sampler_.id()});
   }
 }
 

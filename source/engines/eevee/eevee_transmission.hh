@@ -31,6 +31,15 @@ class Transmission {
   {
     return bodies_;
   }
+  /** Objects that the view leaves out, for the next update(). */
+  void set_hidden(const draw::ObjectSet &hidden)
+  {
+    hidden_ = hidden;
+  }
+  [[nodiscard]] const draw::ObjectSet &hidden() const
+  {
+    return hidden_;
+  }
   /** Copy of the radiance before these surfaces are drawn. Empty until one is seen: then nothing reads it. */
   [[nodiscard]] const gpu::Texture &behind() const
   {
@@ -57,6 +66,7 @@ class Transmission {
   gpu::Texture behind_;
   gpu::Texture behind_depth_;
   Bodies bodies_;
+  draw::ObjectSet hidden_;
   gpu::Sampler sampler_;
   draw::Pass depth_pass_;
   draw::Pass pass_;
