@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <bit>
+#include <utility>
 
 namespace gnomon::cli {
 
@@ -19,11 +20,12 @@ Cryptomatte make_cryptomatte(const std::string &name, std::span<const std::vecto
   }
   Cryptomatte matte;
   for (const std::vector<glm::vec4> &pairs : eevee::cryptomatte_layers(pixels, names)) {
-    Layer &layer = matte.layers.emplace_back(fmt::format("{}{:02}", name, matte.layers.size()), "RGBA");
+    Layer layer{fmt::format("{}{:02}", name, matte.layers.size()), "RGBA", {}};
     layer.values.reserve(4 * pairs.size());
     for (const glm::vec4 &pair : pairs) {
       layer.values.insert(layer.values.end(), {pair.x, pair.y, pair.z, pair.w});
     }
+    matte.layers.push_back(std::move(layer));
   }
   const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", eevee::murmur_hash3(name)));
   matte.metadata = {{key + "name", name},

@@ -140,8 +140,8 @@ Renderer::Renderer(std::shared_ptr<Device> device, ScenePtr scene, glm::ivec2 si
 
 Renderer::~Renderer()
 {
-  device_->renderer_count--;
   device_->dispose(std::move(state_));
+  device_->renderer_count--;
 }
 
 eevee::SceneRenderer &Renderer::use()

@@ -35,7 +35,7 @@ class Device {
 
   /** \throws gpu::Error on other threads, in forked children, during a draw, and after free() */
   gpu::Device &use();
-  /** Destroys \a resources on the device's thread. */
+  /** Destroys \a resources on the device's thread, at once or in the next use(). */
   void dispose(std::shared_ptr<void> resources);
   /** Frees the device. \throws gpu::Error as use(), and while there are renderers; the device is then as before */
   void free();
@@ -54,7 +54,7 @@ class Device {
   /** Empty after free(). */
   std::unique_ptr<gpu::Device> device_;
   std::mutex mutex_;
-  /** Objects that were left on other threads. */
+  /** Resources that the next use() frees. */
   std::vector<std::shared_ptr<void>> left_;
 };
 

@@ -41,7 +41,7 @@ for name, picture in blender.items():
     is_turned = kind in ("Normal", "Position")
     own = {"Y": "Z", "Z": "Y"}.get(channel, channel) if is_turned else channel
     expected = program[passes[kind].format(own)] * (-1 if is_turned and channel == "Y" else 1)
-    # Ids are numbers of all magnitudes. Those of equal coverages may change places.
+    # Ids are numbers of all magnitudes.
     is_id = kind.startswith("Crypto") and channel in "RB"
     error = (picture != expected).mean() if is_id else (abs(picture - expected) / numpy.maximum(1, abs(expected))).max()
     assert error < BOUND, f"{name} differs by {error}"

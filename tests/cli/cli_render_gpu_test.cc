@@ -588,10 +588,12 @@ TEST_F(CliRenderTest, TestModelsAreRenderedOrRefusedWithAMessage)
     std::string render = "render";
     for (const auto &[name, file] : files) {
       render += " " + file;
+      std::filesystem::remove(folder / (name + ".json"));
     }
     const Finished finished = run(render + " -o '{scene}.png' --json '{scene}.json'" + options);
-    ASSERT_EQ(finished.status, 0) << finished.err;
+    EXPECT_EQ(finished.status, 0) << finished.err;
     for (const auto &[name, file] : files) {
+      ASSERT_TRUE(std::filesystem::exists(folder / (name + ".json"))) << file << ": " << finished.err;
       EXPECT_EQ(nlohmann::json::parse(read(name + ".json"))["non_finite"], 0) << file;
       done++;
     }

@@ -97,7 +97,8 @@ void write(const BoxTree &tree, std::span<const Triangle> triangles, std::vector
 }  // namespace
 
 void Bodies::update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
-                    const Settings &settings, const SceneWorld &world, const draw::TextureBinding &stand_in)
+                    const draw::ObjectSet &hidden, const Settings &settings, const SceneWorld &world,
+                    const draw::TextureBinding &stand_in)
 {
   gpu::Device &device = scene.device();
   const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;

@@ -72,7 +72,7 @@ CryptomatteLayers cryptomatte_layers(std::span<const std::vector<Coverage>> pixe
         ranks.emplace_back(id, coverage);
       }
     }
-    std::ranges::sort(ranks, [](const auto &a, const auto &b) { return a.second > b.second; });
+    std::ranges::stable_sort(ranks, [](const auto &a, const auto &b) { return a.second > b.second; });
     for (std::size_t rank = 0; rank < std::min(ranks.size(), 2 * cryptomatte_layer_count); rank++) {
       glm::vec4 &values = layers[rank / 2][i];
       const int first = int(rank % 2) * 2;

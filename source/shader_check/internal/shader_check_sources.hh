@@ -121,6 +121,9 @@ class StageSource {
 class SourceLines {
  public:
   explicit SourceLines(StageSource &source) : source_(source) {}
+  // Lines refer to codes_, which keeps its strings in a move.
+  SourceLines(const SourceLines &) = delete;
+  SourceLines(SourceLines &&) = default;
 
   /** Call it before other functions, and once glslang has read the includes. */
   void read(CheckTarget target);
