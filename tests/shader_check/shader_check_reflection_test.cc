@@ -10,6 +10,8 @@
 #include "eevee_shadow_shared.h"
 #include "slots_shared.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace gnomon::shader_check {
@@ -62,6 +64,21 @@ TEST(Reflect, AnObjectIsReadWhereAnyOfItsFieldsIs)
   EXPECT_FALSE(reads_object("color.xyz, other"));
   EXPECT_TRUE(reads_object("matrix[3]"));
   EXPECT_TRUE(reads_object("position, value"));
+}
+
+TEST(Reflect, MembersOfArraysAreThoseOfTheFirstElement)
+{
+  const gpu::ShaderInterface interface =
+      reflected(VERSION +
+                "struct Inner { vec3 a; float b; };\nstruct Outer { Inner inner[2]; float c; };\n"
+                "layout(std140, binding = 0) uniform test_block { Outer outer[3]; float grid[2][3]; vec4 end; };\n"
+                "void main() { gl_Position = end; }\n");
+  std::vector<std::string> members;
+  for (const gpu::ShaderInterface::Member &member : interface.bindings.at(0).members) {
+    members.push_back(fmt::format("{} {} {}", member.name, member.offset_bytes, member.size_bytes));
+  }
+  EXPECT_EQ(members, (std::vector<std::string>{"outer[0].inner[0].a 0 12", "outer[0].inner[0].b 12 4",
+                                               "outer[0].c 32 16", "grid[0] 144 48", "end 240 16"}));
 }
 
 TEST(Reflect, VaryingsAreCountedUpToTheLastLocation)

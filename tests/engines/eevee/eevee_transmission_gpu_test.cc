@@ -340,6 +340,7 @@ TEST_F(TransmissionGpuTest, EditedBodiesAreTracedAsTheyAre)
   Renderer renderer(*device, scene, square_size_px, {});
   Picture last = renderer.picture(camera);
   const auto check = [&](const std::string &edit_name) {
+    renderer.sync();
     const Picture live = renderer.picture(camera);
     EXPECT_EQ(live.pixels, render().pixels) << edit_name;
     EXPECT_GT(largest_difference(live, last), 0.01) << edit_name;
@@ -359,6 +360,51 @@ TEST_F(TransmissionGpuTest, EditedBodiesAreTracedAsTheyAre)
   check("hidden");
   scene.remove(body);
   check("removed");
+}
+
+TEST_F(TransmissionGpuTest, WhatAViewLeavesOutIsNotTraced)
+{
+  set_ground({{glm::vec3(0.9F, 0, 0), glm::vec3(0, 0.9F, 0), glm::vec3(0, 0, 0.9F), glm::vec3(0.9F)}});
+  edit([](scene::Material &value) {
+    value.ior = 1.5F;
+    value.thickness = 1.0F;
+  });
+  const auto mesh = add_sphere_mesh(scene, glass);
+  test::add_object(scene, mesh, at_height(2.0, glm::dvec3(0.7)));
+  const auto behind = test::add_object(scene, mesh, at_height(0.5, glm::dvec3(0.4)));
+  SceneRenderer renderer(*device, scene, square_size_px, {.sample_count = 1});
+  const auto drawn = [&](std::vector<scene::Handle<scene::Node>> hidden, std::vector<glm::dvec4> planes) {
+    renderer.set_hidden(std::move(hidden));
+    renderer.set_clip_planes(std::move(planes));
+    renderer.sync();
+    renderer.draw(camera);
+    return Picture{square_size_px, renderer.read_picture()};
+  };
+  // It cuts off the farther body and the ground.
+  const std::vector<glm::dvec4> above{{0, 0, 1, -1.2}};
+  const Picture whole = drawn({}, {});
+  const Picture hidden = drawn({behind}, {});
+  const Picture cut = drawn({}, above);
+  EXPECT_EQ(drawn({}, {}).pixels, whole.pixels);
+  scene.edit(behind, [](scene::Node &node) { node.is_visible = false; });
+  EXPECT_EQ(drawn({}, {}).pixels, hidden.pixels);
+  EXPECT_EQ(drawn({}, above).pixels, cut.pixels);
+  EXPECT_GT(largest_difference(whole, hidden), 0.01);
+}
+
+TEST_F(TransmissionGpuTest, ATextureOfTheNearestSurfaceHoldsForItsBody)
+{
+  set_ground({{glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F)}});
+  edit([](scene::Material &value) { value.thickness = 1.0F; });
+  test::add_object(scene, test::add_box_mesh(scene, glass), at_height(1.0, {2, 2, 0.5}));
+  const glm::vec3 clear(render().middle());
+  test::expect_near(clear, glm::vec3(0.5F), 1e-4F);
+  // Metallic and rough by its factors, as a file without them is, and neither by its texture.
+  edit([&](scene::Material &value) {
+    value.metallic = value.roughness = 1.0F;
+    value.metallic_roughness_texture.texture = test::add_texture(scene, 1, {0, 0, 0, 255});
+  });
+  test::expect_near(glm::vec3(render().middle()), clear, 1e-4F);
 }
 
 TEST_F(TransmissionGpuTest, LightIsReflectedTotallyBeyondTheCriticalAngle)
