@@ -45,7 +45,7 @@ std::vector<std::string_view> lit_reads()
 {
   return {"depth",           "view_block",  "light_block",  "light_texture", "light_cluster_block",
           "light_lists",     "world_block", "shadow_cubes", "shadow_maps",   "shadow_esm",
-          "shadow_esm_half", "shadow_evsm", "behind", "behind_depth", "bodies"};
+          "shadow_esm_half", "shadow_evsm", "behind",       "behind_depth",  "bodies"};
 }
 
 std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
