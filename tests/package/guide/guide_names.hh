@@ -25,7 +25,6 @@ struct Vertex {
 };
 
 void paint(const glm::vec2 &uv);
-void add_to_selection(scene::Handle<scene::Node> node);
 void progress_bar(double part);
 void status(const std::string &text);
 void show(const gpu::Texture &texture, double texel);
