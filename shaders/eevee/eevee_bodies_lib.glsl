@@ -204,7 +204,8 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
   // Metres along the view axis: perspective scale / (z - z of infinity), orthographic z / change of z in a metre.
   float scale = from.z - ahead.z * from.w;
   float last = 0.0;
-  // What is before the ray's depth is that much nearer. Depths of planes are linear over the picture, and so are those of the ray.
+  // The gap is the depth of the ray less that of the surface in the picture; a negative gap puts the ray behind the surface. Both depths are
+  // linear over the picture if the surface is a plane.
   float gap = path.start.z - seen_at(path, 0.0);
   float closing = 0.0;
   float hidden_m = NO_HIT;
@@ -216,7 +217,7 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
     // Rounding at the far end is no surface.
     if (next_gap >= 0.0 || seen <= 0.0) {
       closing = (gap - next_gap) / max(part - last, 1e-20);
-      // The plane of what was seen last meets the ray where the picture shows something else.
+      // The plane of the last surface would meet the ray at a place where the picture shows another surface.
       is_guess = seen > 0.0 && closing > 0.0 && part + next_gap / closing < 1.0;
       gap = next_gap;
       last = part;
@@ -241,7 +242,7 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
     float margin_m = 0.002 * (is_perspective ? depths_m.z : 0.1 / abs(ahead.z)) + 2.0 * abs(depths_m.x - depths_m.y);
     float slope_m = depths.w > 0.0 ? 1.5 * min(abs(depths_m.w - depths_m.z), 0.015 * depths_m.z) : 0.0;
     bool is_met = hidden_m == NO_HIT && abs(depths_m.x - depths_m.z) <= margin_m + slope_m;
-    // What is seen now is farther than the place where the ray was hidden, so that it has met it before.
+    // This surface is farther than the place where the ray was hidden. The ray met the surface before that place.
     if (is_met || depths_m.z > hidden_m) {
       return PictureHit(true, texco_at(path, high), distance_at(path, high));
     }
@@ -250,7 +251,7 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
       miss.texco = texco_at(path, last);
     }
   }
-  // Behind a body, and beyond the edge of the picture, the plane of what was seen last goes on.
+  // Behind a body, and beyond the edge of the picture, the plane of the last surface goes on.
   if (is_guess && (hidden_m < NO_HIT || whole < 1.0)) {
     return PictureHit(true, texco_at(path, last), distance_at(path, min(last + gap / closing, 1.0)));
   }
@@ -262,7 +263,7 @@ vec2 random_pair(uint number)
 {
   uint pixel = mixed_bits(uint(gl_FragCoord.x) + 65536u * uint(gl_FragCoord.y) + 7919u * number);
   uint other = mixed_bits(pixel ^ floatBitsToUint(view.mask_shift));
-  // Of two surfaces on a way, one alone is spread evenly over the samples: both by the same shift would be one number.
+  // The samples spread the first number evenly for one surface alone. Two surfaces with the same shift would have dependent numbers.
   bool is_spread = number % 64u == 0u;
   return vec2(is_spread ? fract(to_unit(pixel) + view.mask_shift) : to_unit(mixed_bits(other + 0x9E3779B9u)), to_unit(other));
 }

@@ -69,7 +69,7 @@ float reflection_scale(FullMaterialData full, float ior)
  */
 float sky_part(vec3 position_ws, vec3 direction_ws, vec3 normal_ws, bool is_front)
 {
-  // It leaves its own surface through the back of what it would meet there.
+  // The ray must not meet the side of its own surface that it leaves.
   Ray ray = Ray(position_ws, direction_ws, !is_front);
   if (dot(direction_ws, normal_ws) <= 0.0 || trace_bodies(ray).distance_m < NO_HIT) {
     return 0.0;
@@ -81,9 +81,9 @@ float sky_part(vec3 position_ws, vec3 direction_ws, vec3 normal_ws, bool is_fron
 /** The light's way behind the nearest surface. */
 struct Way {
   Ray ray;
-  /** What its surfaces and its media leave of the light. */
+  /** The part of the light that its surfaces and its media pass. */
   vec3 left;
-  /** What arrives of the world's light that its surfaces mirror, radiance. */
+  /** Radiance of the world that its surfaces mirror, multiplied by the part that reaches the nearest surface. */
   vec3 mirrored;
   /** Within a body of this material. */
   bool is_inside;
@@ -113,13 +113,16 @@ float refracted(inout Way way, vec3 normal_ws, bool is_front, float ior, float r
   return cos_l <= 0.0 ? 0.0 : alpha > ALPHA_MIN ? 2.0 * cos_l * ggx_masking_over_2cos(cos_l, alpha) : 1.0;
 }
 
-/** What a surface leaves of the light that passes it, apart from what it reflects, and how rough it is. */
+/** The part of the entering light that a surface passes, and its roughness. The part that the surface reflects is not in it. */
 struct Passage {
   vec3 left;
   float roughness;
 };
 
-/** Of a surface behind the nearest one, by the factors of its material. A texture makes it less metallic than its factor, which is 1. */
+/**
+ * The passage of a surface behind the nearest one, by the factors of its material. With a texture of the metallic factor, the surface counts
+ * as not metallic, because the texture is not read.
+ */
 Passage passage_of(uint material)
 {
   FullMaterialData full = full_materials[material];

@@ -18,7 +18,7 @@ namespace gnomon::python {
  * A device with a context of its own, or with that of a host. Its thread is the one that constructs it, and all others
  * get an error. Python may drop the last reference to an object on any thread, and while another context is current;
  * what belongs to the device is then freed by the next call on its thread. A driver's threads do not exist in a forked
- * child, which would wait for them for ever: there all functions throw, and nothing is freed.
+ * child, which would wait for them forever: there all functions throw, and nothing is freed.
  */
 class Device {
  public:

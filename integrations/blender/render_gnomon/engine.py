@@ -163,7 +163,7 @@ class GnomonEngine(bpy.types.RenderEngine):
             layers = {'combined': renderer.render(progress=tell)}
         else:
             layers = renderer.layers([each.layer for each in passes], progress=tell)
-        # As Blender's own engines name them.
+        # Blender's own engines use these names.
         things = {'CryptoObject': drawn.nodes, 'CryptoMaterial': drawn.materials}
         metadata = {}
         for stem in {each.stem for each in passes if isinstance(each, Matte)}:

@@ -17,7 +17,7 @@ class Transmission {
   Transmission(draw::ObjectBuffer &objects, const RenderBuffers &buffers);
   /** Create the copies, with mip levels if a surface \a is_rough. */
   void make(draw::Viewport &viewport, bool is_rough);
-  /** Take the surfaces through which others are seen, and the background. \pre make was called */
+  /** Take the surfaces through which others are seen, and the background. Does nothing before make(). */
   void update(const render_scene::RenderScene &scene, std::span<const TransmissiveObject> objects,
               const Settings &settings, const SceneWorld &world);
   /** Destroy the copies and the surfaces. */

@@ -327,16 +327,27 @@ TEST_F(TransmissionGpuTest, ABodyIsSeenThroughAnotherAndWhatIsBehindTheGroundIsN
   test::expect_near(glm::vec3(render().middle()), 0.5F * tint * tint * glm::vec3(0.5F, 0.25F, 1.0F), 1e-3F);
 }
 
-TEST_F(TransmissionGpuTest, EditedBodiesAreTracedAsTheyAre)
+/** A sphere of glass before another one and a ground of several colours. */
+class TwoBodiesGpuTest : public TransmissionGpuTest {
+ protected:
+  TwoBodiesGpuTest()
+  {
+    set_ground({{glm::vec3(0.9F, 0, 0), glm::vec3(0, 0.9F, 0), glm::vec3(0, 0, 0.9F), glm::vec3(0.9F)}});
+    edit([](scene::Material &value) {
+      value.ior = 1.5F;
+      value.thickness = 1.0F;
+    });
+    mesh = add_sphere_mesh(scene, glass);
+    body = test::add_object(scene, mesh, at_height(2.0, glm::dvec3(0.7)));
+    behind = test::add_object(scene, mesh, at_height(0.5, glm::dvec3(0.4)));
+  }
+  scene::Handle<scene::Mesh> mesh;
+  scene::Handle<scene::Node> body;
+  scene::Handle<scene::Node> behind;
+};
+
+TEST_F(TwoBodiesGpuTest, EditedBodiesAreTracedAsTheyAre)
 {
-  set_ground({{glm::vec3(0.9F, 0, 0), glm::vec3(0, 0.9F, 0), glm::vec3(0, 0, 0.9F), glm::vec3(0.9F)}});
-  edit([](scene::Material &value) {
-    value.ior = 1.5F;
-    value.thickness = 1.0F;
-  });
-  const auto mesh = add_sphere_mesh(scene, glass);
-  const auto body = test::add_object(scene, mesh, at_height(2.0, glm::dvec3(0.7)));
-  const auto behind = test::add_object(scene, mesh, at_height(0.5, glm::dvec3(0.4)));
   Renderer renderer(*device, scene, square_size_px, {});
   Picture last = renderer.picture(camera);
   const auto check = [&](const std::string &edit_name) {
@@ -362,16 +373,8 @@ TEST_F(TransmissionGpuTest, EditedBodiesAreTracedAsTheyAre)
   check("removed");
 }
 
-TEST_F(TransmissionGpuTest, WhatAViewLeavesOutIsNotTraced)
+TEST_F(TwoBodiesGpuTest, WhatAViewLeavesOutIsNotTraced)
 {
-  set_ground({{glm::vec3(0.9F, 0, 0), glm::vec3(0, 0.9F, 0), glm::vec3(0, 0, 0.9F), glm::vec3(0.9F)}});
-  edit([](scene::Material &value) {
-    value.ior = 1.5F;
-    value.thickness = 1.0F;
-  });
-  const auto mesh = add_sphere_mesh(scene, glass);
-  test::add_object(scene, mesh, at_height(2.0, glm::dvec3(0.7)));
-  const auto behind = test::add_object(scene, mesh, at_height(0.5, glm::dvec3(0.4)));
   SceneRenderer renderer(*device, scene, square_size_px, {.sample_count = 1});
   const auto drawn = [&](std::vector<scene::Handle<scene::Node>> hidden, std::vector<glm::dvec4> planes) {
     renderer.set_hidden(std::move(hidden));
