@@ -485,7 +485,8 @@ constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 
 constexpr std::array commands = std::to_array<Command>({
     {"open", "FILE", 1, 1, Need::Frame, open},
-    {"drop", "FILE", 1, 1, Need::Frame, drop},
+    // No frame: what follows is done before the file can be open, however fast it is read.
+    {"drop", "FILE", 1, 1, Need::Nothing, drop},
     {"cancel", "", 0, 0, Need::Nothing, cancel_open},
     {"save", "FILE", 1, 1, Need::Frame, save},
     {"size", "WIDTH HEIGHT", 2, 2, Need::Frame, resize},
