@@ -312,51 +312,71 @@ void find_faults(std::vector<PlannedFile> &files, const std::string &id)
                       [&](std::size_t i) { files[i].fault = planned_fault(files[i].name, id); });
 }
 
+/** The files that a plan's parts write. */
+struct PlannedFiles {
+  std::vector<PlannedFile> files;
+  /** The files of each divided picture. */
+  std::map<std::string, std::vector<std::string>> divided;
+  /** Pictures of the plan, divided or not. */
+  std::size_t picture_count = 0;
+};
+
+PlannedFiles planned_files(const WorkPlan &plan)
+{
+  PlannedFiles planned;
+  for (std::size_t i = 0; i < plan.parts.size(); i++) {
+    for (const std::string &name : files_of(plan, plan.parts[i])) {
+      if (plan.parts[i].is_of_picture()) {
+        planned.divided[picture_of(plan, plan.parts[i])].push_back(name);
+      }
+      else {
+        planned.picture_count++;
+      }
+      planned.files.push_back({.part = i, .name = name});
+    }
+  }
+  planned.picture_count += planned.divided.size();
+  return planned;
+}
+
+/**
+ * Leaves out the pictures that an earlier merge has joined, and their parts, which may have been deleted since.
+ * \return the faults of joined pictures that are damaged
+ */
+std::vector<std::string> leave_out_joined(PlannedFiles &planned, const std::string &id)
+{
+  std::vector<PlannedFile> pictures;
+  for (const auto &[picture, names] : planned.divided) {
+    pictures.push_back({.name = picture});
+  }
+  find_faults(pictures, id);
+  std::set<std::string> not_needed;
+  std::vector<std::string> faults;
+  for (const PlannedFile &picture : pictures) {
+    if (picture.fault.empty()) {
+      const std::vector<std::string> &names = planned.divided.at(picture.name);
+      not_needed.insert(names.begin(), names.end());
+      planned.divided.erase(picture.name);
+    }
+    else if (std::error_code ignored; std::filesystem::exists(picture.name, ignored)) {
+      faults.push_back(picture.fault);
+    }
+  }
+  std::erase_if(planned.files, [&](const PlannedFile &file) { return not_needed.contains(file.name); });
+  return faults;
+}
+
 /** Checks all parts of a plan, and joins those of pictures that are divided. */
 Status merge_plan(const std::string &path, bool is_checked_only)
 {
   const WorkPlan plan = read_plan(path, program_name());
   std::filesystem::current_path(std::filesystem::absolute(path).parent_path() / plan.folder);
   const std::string id = plan.id();
-  std::vector<PlannedFile> files;
-  // The parts of each divided picture.
-  std::map<std::string, std::vector<std::string>> divided;
-  std::size_t picture_count = 0;
-  for (std::size_t i = 0; i < plan.parts.size(); i++) {
-    for (const std::string &name : files_of(plan, plan.parts[i])) {
-      if (plan.parts[i].is_of_picture()) {
-        divided[picture_of(plan, plan.parts[i])].push_back(name);
-      }
-      else {
-        picture_count++;
-      }
-      files.push_back({.part = i, .name = name});
-    }
-  }
-  picture_count += divided.size();
-  // A picture that was joined by an earlier merge does not need its parts.
-  std::vector<PlannedFile> pictures;
-  for (const auto &[picture, names] : divided) {
-    pictures.push_back({.name = picture});
-  }
-  find_faults(pictures, id);
-  std::set<std::string> not_needed;
-  // Their parts may have been deleted after that merge.
-  std::vector<std::string> joined_faults;
-  for (const PlannedFile &picture : pictures) {
-    if (picture.fault.empty()) {
-      const std::vector<std::string> &names = divided.at(picture.name);
-      not_needed.insert(names.begin(), names.end());
-      divided.erase(picture.name);
-    }
-    else if (std::error_code ignored; std::filesystem::exists(picture.name, ignored)) {
-      joined_faults.push_back(picture.fault);
-    }
-  }
-  std::erase_if(files, [&](const PlannedFile &file) { return not_needed.contains(file.name); });
-  find_faults(files, id);
+  PlannedFiles planned = planned_files(plan);
+  const std::vector<std::string> joined_faults = leave_out_joined(planned, id);
+  find_faults(planned.files, id);
   std::size_t fault_count = 0;
-  for (const PlannedFile &file : files) {
+  for (const PlannedFile &file : planned.files) {
     if (!file.fault.empty()) {
       print_message("gnomon: part {}: {}\n", file.part, file.fault);
       fault_count++;
@@ -369,17 +389,16 @@ Status merge_plan(const std::string &path, bool is_checked_only)
     print_message("gnomon: {}: {} files are missing or damaged; render their parts again\n", path, fault_count);
     return Status::Failed;
   }
-  if (is_checked_only) {
-    divided.clear();
-  }
-  for (const auto &[picture, names] : divided) {
-    ExrPart whole = merge_parts(names);
-    std::ranges::copy(planned_metadata(id, picture), std::back_inserter(whole.metadata));
-    if (const Status status = write_merged(picture, whole); status != Status::Done) {
-      return status;
+  if (!is_checked_only) {
+    for (const auto &[picture, names] : planned.divided) {
+      ExrPart whole = merge_parts(names);
+      std::ranges::copy(planned_metadata(id, picture), std::back_inserter(whole.metadata));
+      if (const Status status = write_merged(picture, whole); status != Status::Done) {
+        return status;
+      }
     }
   }
-  fmt::print("{}: {} pictures are complete\n", path, picture_count);
+  fmt::print("{}: {} pictures are complete\n", path, planned.picture_count);
   return Status::Done;
 }
 

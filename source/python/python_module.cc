@@ -417,7 +417,7 @@ py::array_t<float> picture_array(std::vector<glm::vec4> pixels, glm::ivec2 size_
           owner};
 }
 
-void define_renderer(py::module_ &module)
+void define_device(py::module_ &module)
 {
   py::class_<Device, std::shared_ptr<Device>>(module, "Device",
                                               "A GPU, or a software rasteriser. It and its renderers are used on one "
@@ -435,7 +435,11 @@ void define_renderer(py::module_ &module)
       .def_property_readonly(
           "memory_bytes", [](Device &device) { return device.use().memory_bytes(); },
           "Content of all textures, buffers and meshes on the device, bytes.");
+}
 
+/** What a renderer tells about its pictures and its properties. */
+void define_answers(py::module_ &module)
+{
   py::class_<Report>(module, "Report", "Facts about a renderer's last picture.")
       .def_readonly("warnings", &Report::warnings, "One text for each thing that is not drawn.")
       .def_readonly("limits", &Report::limits, "One text for each limit that was reached.")
@@ -447,17 +451,62 @@ void define_renderer(py::module_ &module)
   py::class_<Description>(module, "Description", "A setting as programs show it.")
       .def_readonly("label", &Description::label, "A short text, or the name of the property.")
       .def_readonly("group", &Description::group, "A header for several settings; empty: none.")
-      .def_readonly("unit", &Description::unit, "Of the value; empty: none.")
+      .def_readonly("unit", &Description::unit, "Unit of the value; empty: none.")
       .def_readonly("sentence", &Description::sentence, "The meaning.")
       .def_readonly("zero", &Description::zero,
                     "The meaning of 0 where it is allowed beside the limits; empty: it is not.")
       .def_readonly("min", &Description::min, "The least number.")
       .def_readonly("max", &Description::max, "The largest number.")
-      .def_readonly("words", &Description::words, "Of the values of an enumeration, or for False and True.")
+      .def_readonly("words", &Description::words, "Words for the values of an enumeration, or for False and True.")
       .def_readonly("type", &Description::type, "As in the stub.")
       .def_readonly("default", &Description::default_value,
                     "The value in pictures of Renderer.offline with 64 samples.");
+}
 
+void define_drawing(py::class_<Renderer, std::shared_ptr<Renderer>> &renderer)
+{
+  renderer.def("render", &render, py::arg("camera") = py::none(), py::arg("seconds_max") = infinite,
+               py::arg("progress") = py::none(),
+               "Draw a picture: an array of height x width x 4 float32 that owns its memory. Red, green and blue are "
+               "scene-linear radiance, W/(sr m²), multiplied by alpha; the top row is the first.\n\n"
+               "`camera`: a node that has one; None: the first of the scene. `seconds_max`: end the picture with fewer "
+               "samples, s. `progress`: called on this thread after each sample with the number of samples; what it "
+               "raises ends the picture. Other threads of the interpreter run meanwhile.");
+  renderer.def(
+      "refine", &refine, py::arg("seconds"), py::arg("camera") = py::none(),
+      "For viewports: the picture within about this time, 0.0001 to 10 s, and whether it is complete. After a "
+      "change, the first call draws a whole picture, in a lower resolution and with smaller shadows if the time "
+      "asks for it; later calls refine it. The complete one equals that of render().");
+  renderer.def(
+      "draw", &draw, py::arg("seconds"), py::arg("framebuffer"), py::arg("framebuffer_size"),
+      py::arg("rectangle") = py::none(), py::arg("camera") = py::none(), py::kw_only(), py::arg("encoding") = "display",
+      py::arg("over") = false, py::arg("clip_from_view") = py::none(),
+      "As refine(), into a framebuffer of the host, for devices of Device(host=True). Returns whether the picture is "
+      "complete.\n\n"
+      "`framebuffer`: its name in OpenGL; 0: the window's. `framebuffer_size`: width and height, pixels. `rectangle`: "
+      "left, bottom, width and height in it, pixels; None: all of it. A picture of another size is scaled. `encoding`: "
+      "'display', 'linear' (scene-linear, for formats of floating point), or 'srgb' (for sRGB formats, which apply the "
+      "transfer function). `over`: blend the picture over the content. `clip_from_view`: the host's projection, depth "
+      "from -1 to 1; the picture's depth is then written, and with `over` compared. Further arguments: view_transform, "
+      "'standard', 'raw', 'agx' or 'pbr-neutral' (default); exposure, stops.");
+  renderer.def(
+      "layers", &layers, py::arg("names"), py::arg("camera") = py::none(), py::arg("progress") = py::none(),
+      "Draw a picture and layers of it, from the same samples: a dictionary of arrays, with the top row first, by "
+      "these names:\n\n"
+      "'combined': what render() returns. 'depth': m along the view's axis, 1e10 without a surface. 'position': m, "
+      "world "
+      "space. 'normal': unit vectors, world space. 'albedo', 'roughness': multiplied by the coverage of the pixel. "
+      "'light': light.NAME for each name of lamps, W/(sr m²). 'emission', 'world': the rest of the light. 'ids': "
+      "node_ids and material_ids, int32 indices in the scene's nodes and materials, -1 for none. 'crypto_object', "
+      "'crypto_material': crypto_object.0, .1 and .2, each with two of the nodes that cover a pixel: cryptomatte_id of "
+      "the name, coverage, id, coverage.\n\n"
+      "depth, position, normal and ids are those of the surface at the centre of a pixel. Blended surfaces are not in "
+      "them. Arrays of the same kind share their memory. Needs a sample_count and no noise_threshold. `progress`: as "
+      "in render(), for the samples of the picture.");
+}
+
+void define_renderer(py::module_ &module)
+{
   py::class_<Renderer, std::shared_ptr<Renderer>> renderer(
       module, "Renderer",
       "Draws a scene lit by its lamps and its world. A change of the scene or of a property takes effect with the next "
@@ -485,46 +534,9 @@ void define_renderer(py::module_ &module)
   renderer.def_property(
       "size", &Renderer::size_px, [](Renderer &owner, const glm::ivec2 &size_px) { owner.use().resize(size_px); },
       "Width and height of the picture, pixels.");
-  renderer.def("render", &render, py::arg("camera") = py::none(), py::arg("seconds_max") = infinite,
-               py::arg("progress") = py::none(),
-               "Draw a picture: an array of height x width x 4 float32 that owns its memory. Red, green and blue are "
-               "scene-linear radiance, W/(sr m²), multiplied by alpha; the top row is the first.\n\n"
-               "`camera`: a node that has one; None: the first of the scene. `seconds_max`: end the picture with fewer "
-               "samples, s. `progress`: called on this thread after each sample with the number of samples; what it "
-               "raises ends the picture. Other threads of the interpreter run meanwhile.");
-  renderer.def(
-      "refine", &refine, py::arg("seconds"), py::arg("camera") = py::none(),
-      "For viewports: the picture within about this time, 0.0001 to 10 s, and whether it is complete. After a "
-      "change, the first call draws a whole picture, in a lower resolution and with smaller shadows if the time "
-      "asks for it; later calls refine it. The complete one equals that of render().");
-  renderer.def(
-      "draw", &draw, py::arg("seconds"), py::arg("framebuffer"), py::arg("framebuffer_size"),
-      py::arg("rectangle") = py::none(), py::arg("camera") = py::none(), py::kw_only(), py::arg("encoding") = "display",
-      py::arg("over") = false, py::arg("clip_from_view") = py::none(),
-      "As refine(), into a framebuffer of the host, for devices of Device(host=True). Returns whether the picture is "
-      "complete.\n\n"
-      "`framebuffer`: its name in OpenGL; 0: the window's. `framebuffer_size`: width and height, pixels. `rectangle`: "
-      "left, bottom, width and height in it, pixels; None: all of it. A picture of another size is scaled. `encoding`: "
-      "'display', 'linear' (scene-linear, for formats of floating point), or 'srgb' (for sRGB formats, which apply the "
-      "transfer function). `over`: blend the picture over the content. `clip_from_view`: the host's projection, depth "
-      "from -1 to 1; the picture's depth is then written, and with `over` compared. Further arguments: view_transform, "
-      "'standard', 'raw', 'agx' or 'pbr-neutral' (default); exposure, stops.");
   renderer.def_static("descriptions", &descriptions,
                       "A Description of each property, by its name, for programs that show them.");
-  renderer.def(
-      "layers", &layers, py::arg("names"), py::arg("camera") = py::none(), py::arg("progress") = py::none(),
-      "Draw a picture and layers of it, from the same samples: a dictionary of arrays, with the top row first, by "
-      "these names:\n\n"
-      "'combined': what render() returns. 'depth': m along the view's axis, 1e10 without a surface. 'position': m, "
-      "world "
-      "space. 'normal': unit vectors, world space. 'albedo', 'roughness': multiplied by the coverage of the pixel. "
-      "'light': light.NAME for each name of lamps, W/(sr m²). 'emission', 'world': the rest of the light. 'ids': "
-      "node_ids and material_ids, int32 indices in the scene's nodes and materials, -1 for none. 'crypto_object', "
-      "'crypto_material': crypto_object.0, .1 and .2, each with two of the nodes that cover a pixel: cryptomatte_id of "
-      "the name, coverage, id, coverage.\n\n"
-      "depth, position, normal and ids are those of the surface at the centre of a pixel. Blended surfaces are not in "
-      "them. Arrays of the same kind share their memory. Needs a sample_count and no noise_threshold. `progress`: as "
-      "in render(), for the samples of the picture.");
+  define_drawing(renderer);
   renderer.def("report", &Renderer::report, "A Report on the last picture.");
 
   module.def("cryptomatte_id", &eevee::cryptomatte_id, py::arg("name"),
@@ -543,6 +555,8 @@ PYBIND11_MODULE(_gnomon, module)
   module.attr("__name__") = "gnomon";
   define_errors(module);
   define_scene(module);
+  define_device(module);
+  define_answers(module);
   define_renderer(module);
 #ifdef GNOMON_PYTHON_REFERENCE
   define_reference(module);

@@ -97,6 +97,37 @@ WindowViewport::OverlayKey WindowViewport::overlay_key(Document &document) const
   return key;
 }
 
+draw::View WindowViewport::drawn_view(Document &document) const
+{
+  render_scene::RenderScene &render_scene = document.render_scene();
+  draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
+  if (is_hiding(document.scene())) {
+    // Without a live node nothing is isolated; render_scene would leave out all objects.
+    std::span<const scene::Handle<scene::Node>> isolated;
+    if (is_isolated(document.scene())) {
+      isolated = isolated_;
+    }
+    view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated));
+  }
+  if (is_clipped()) {
+    view = view.with_clip_planes(render_scene.relative(clip_planes_ws_));
+  }
+  return view;
+}
+
+void WindowViewport::prepare(render_scene::RenderScene &render_scene)
+{
+  canvas_.resize(render_scene.device(), size_px_);
+  canvas_.clear(backdrop);
+  if (!viewport_) {
+    viewport_ = std::make_unique<draw::Viewport>(render_scene.device(), size_px_);
+    overlay_.emplace(render_scene);
+  }
+  if (viewport_->size_px() != size_px_) {
+    viewport_->resize(size_px_);
+  }
+}
+
 void WindowViewport::draw_picture(Document &document, draw::Engine &used, double budget_seconds,
                                   const draw::Target &target)
 {
@@ -128,18 +159,7 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   const bool is_same = viewport_ && key == synced_;
   const bool is_synced = is_same && !has_failed_;
   follow(document);
-  draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
-  if (is_hiding(document.scene())) {
-    // Without a live node nothing is isolated; render_scene would leave out all objects.
-    std::span<const scene::Handle<scene::Node>> isolated;
-    if (is_isolated(document.scene())) {
-      isolated = isolated_;
-    }
-    view = view.with_hidden(render_scene.hidden_objects(hidden_, isolated));
-  }
-  if (is_clipped()) {
-    view = view.with_clip_planes(render_scene.relative(clip_planes_ws_));
-  }
+  const draw::View view = drawn_view(document);
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     // Not before, as each picture of a moving view would cost the time of the look.
@@ -156,15 +176,7 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   is_complete_ = true;
   has_failed_ = true;
 
-  canvas_.resize(render_scene.device(), size_px_);
-  canvas_.clear(backdrop);
-  if (!viewport_) {
-    viewport_ = std::make_unique<draw::Viewport>(render_scene.device(), size_px_);
-    overlay_.emplace(render_scene);
-  }
-  if (viewport_->size_px() != size_px_) {
-    viewport_->resize(size_px_);
-  }
+  prepare(render_scene);
   draw::Engine *one = &document.engine(engine);
   if (auto *unlit = dynamic_cast<unlit::Engine *>(one)) {
     unlit->set_display(*viewport_, {has_wireframe, reach == overlay::Reach::Through});

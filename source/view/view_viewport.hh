@@ -196,6 +196,10 @@ class WindowViewport {
   [[nodiscard]] OverlayKey overlay_key(Document &document) const;
   /** Empty: follows no camera. */
   [[nodiscard]] std::optional<scene::PlacedCamera> looked_through(const Document &document) const;
+  /** The view that is drawn: without the nodes that are hidden here, and with the clip planes. */
+  [[nodiscard]] draw::View drawn_view(Document &document) const;
+  /** Make the viewport, or give it the size, and clear the canvas. */
+  void prepare(render_scene::RenderScene &render_scene);
   /** Draw with \a used, within the budget if there is one and the engine supports budgets. */
   void draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target);
   /** End a picture that has reached the maximum time. */
