@@ -21,7 +21,7 @@ try {
     std::fprintf(stderr, "%s\n", warning.c_str());
   }
 
-  // Of a context of its own: no display and no GPU are needed.
+  // The device makes its own context: no display and no GPU are needed.
   const auto device = gpu::create_gl_device();
   const draw::TargetTexture picture(*device, "picture", gpu::Format::RGBA8, size_px);
   eevee::SceneRenderer renderer(*device, scene, size_px, {.sample_count = 8});

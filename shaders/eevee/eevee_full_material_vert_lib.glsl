@@ -19,7 +19,7 @@ layout(location = 16) out vec4 surface_anisotropy_coat_normal_uvs;
 layout(location = 19) flat out float surface_coat_normal_scale;
 #  ifdef USE_TRANSMISSION
 layout(location = 18) out vec4 surface_transmission_uvs;
-/** Of directions. */
+/** For directions. */
 layout(location = 12) flat out mat3 surface_object_from_world;
 /** Factor of roughness; whether a texture is multiplied with it; index of refraction. */
 layout(location = 15) flat out vec3 surface_lens;

@@ -35,7 +35,7 @@ BaseLobe make_base_lobe(float alpha, Surface surface)
   vec3 up_ws = sign(surface_tangent_ws.w) * cross(surface_normal_ws, surface_tangent_ws.xyz);
   vec3 along = direction.x * surface_tangent_ws.xyz + direction.y * up_ws;
   along -= dot(along, normal) * normal;
-  // Of one step of 8 bits. The mesh may have no tangents, and the texture no direction.
+  // The square of one step of 8 bits. The mesh may have no tangents, and the texture no direction.
   const float least_sq = 1e-5;
   float length_sq = dot(along, along);
   BaseLobe lobe;
@@ -44,7 +44,7 @@ BaseLobe make_base_lobe(float alpha, Surface surface)
   lobe.alphas = anisotropic_alphas(alpha, strength);
   vec3 across = cross(normal, along);
   lobe.lobe_from_world = transpose(mat3(along, across, normal));
-  // Of a smooth surface, the normal of a cylinder along the smoother direction, as in Khronos's sample viewer.
+  // A smooth surface uses the normal of a cylinder along the smoother direction, as in Khronos's sample viewer.
   vec3 round_normal = surface.view_ws - dot(surface.view_ws, across) * across;
   float bend = 1.0 - strength * (1.0 - sqrt(alpha));
   bend *= bend;

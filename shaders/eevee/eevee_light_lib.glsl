@@ -126,7 +126,7 @@ float base_specular_lobe(vec2 alphas, Surface surface, vec3 to_light, float cos_
 float sampled_alpha(float alpha, Surface surface, float change_sq)
 {
   // n^-2 for n samples, as the bias of textures is -0.5 log2(n). A sample has 1/n of the area of a pixel, and so of the variance.
-  // Of that, the samples beside it see a part: with 1/n alone, the error of four and more is larger than without a filter.
+  // The samples beside it see a part of that variance: with 1/n alone, the error of four and more is larger than without a filter.
   float share = exp2(4.0 * view.texture_lod_bias);
   return filtered_alpha(alpha, change_sq, dot(surface.normal_ws, surface.view_ws), share);
 }

@@ -9,7 +9,7 @@ layout(location = 5) flat in uint surface_object;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** Of the picture. */
+  /** Index of the picture's sample, and its seed. */
   int sample_index;
   int sample_seed;
 };

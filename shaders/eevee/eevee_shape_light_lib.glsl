@@ -20,7 +20,7 @@ ShapeShading shape_shading(MaterialData material, Surface surface)
   return shading;
 }
 
-/** Of the base of the material, and of its coat. \see shade_shapes */
+/** Shading by the base of the material, and by its coat. \see shade_shapes */
 ShapeShading base_shading;
 #ifdef USE_LAYERS
 ShapeShading coat_shading;

@@ -23,7 +23,7 @@ struct SurfaceInputs {
   vec3 position_ws;
   /** Object space. */
   vec3 position_os;
-  /** Of the mesh, without the normal texture. World space, unit length, on the visible side. */
+  /** Normal of the mesh, without the normal texture. World space, unit length, on the visible side. */
   vec3 normal_ws;
   /** Towards the viewer, unit length. In shadow passes, which have none, it is normal_ws. */
   vec3 view_ws;

@@ -147,7 +147,7 @@ struct WorldShading {
   float level_share;
 };
 
-/** Of the last call of world_light. */
+/** Set by the last call of world_light. */
 WorldShading world_shading;
 #endif
 

@@ -12,7 +12,7 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   vec4 color;
   /** Lower left corner of the picture in the target. */
   ivec2 origin_px;
-  /** Of the picture, which may be smaller than the mask's texture. */
+  /** Size of the picture, which may be smaller than the mask's texture. */
   ivec2 picture_size_px;
 };
 

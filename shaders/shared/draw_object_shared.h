@@ -11,7 +11,7 @@ struct ObjectData {
   mat4 world_from_object;
   /** Columns of the normal matrix, up to scale. \see draw::normal_matrix */
   vec3 normal_x;
-  /** Of the object in `object_block`. */
+  /** Index of the object in `object_block`. */
   uint index;
   /** w is unused. */
   vec4 normal_y;

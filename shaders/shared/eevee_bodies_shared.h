@@ -15,7 +15,7 @@
 #define BODY_HEAD_TEXELS 2
 #define BODY_NODE_TEXELS 2
 #define BODY_TRIANGLE_TEXELS 6
-/** Of the number that a leaf has: its first triangle times this, plus the number of its triangles. */
+/** The number in a leaf is its first triangle times BODY_LEAF, plus the count of its triangles. */
 #define BODY_LEAF 8
 /** Most nodes, and most triangles: floats hold the numbers. */
 #define BODY_TRIANGLE_MAX 2097152

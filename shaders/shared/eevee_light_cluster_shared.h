@@ -15,7 +15,7 @@ SHARED_BEGIN
 /** Content of `light_cluster_block`. */
 struct LightClusterBlock {
   /**
-   * Of a point in world space: x / w is the column and y / w the row, with their fractions; z is the depth along the view
+   * Maps a point in world space: x / w is the column and y / w the row, with their fractions; z is the depth along the view
    * direction, metres. w is the depth in a perspective view, and 1 in an orthographic one.
    */
   mat4 grid_from_world;
@@ -52,7 +52,7 @@ SHARED_FUNCTION int light_froxel(LightClusterBlock grid, vec3 position_ws)
   int row = int(clamp(p.y / w, 0.0f, float(grid.row_count - 1)));
   int slice = int(clamp(grid.slice_scale * f + grid.slice_bias, 0.0f, float(grid.slice_count - 1)));
   int froxel = (slice * grid.row_count + row) * grid.column_count + column;
-  // Of NaN, clamp and the conversion to an integer are undefined.
+  // clamp and the conversion to an integer are undefined for NaN.
   return clamp(froxel, 0, grid.slice_count * grid.row_count * grid.column_count - 1);
 }
 

@@ -171,7 +171,7 @@ SHARED_FUNCTION vec3 absorption_of(vec3 left, float distance_m)
 /** Part of the light that is left after \a length_m metres. */
 SHARED_FUNCTION vec3 beer_lambert(vec3 absorption, float length_m)
 {
-  // Of more, floats keep nothing. The product may be infinite, whose exponential is NaN on some devices.
+  // Beyond 100, the result is 0 in floats. The product may be infinite; its exponential is NaN on some devices.
   return exp(vec3(0.0f) - min(absorption * length_m, vec3(100.0f)));
 }
 

@@ -12,7 +12,7 @@
 #define ATTRIBUTE_SECOND_UV 4
 #define ATTRIBUTE_TANGENT 5
 #define ATTRIBUTE_COLOR 6
-/** Of the object of a call. A mat4 takes four locations. */
+/** Transform of the object of a call. A mat4 takes four locations. */
 #define ATTRIBUTE_WORLD_FROM_OBJECT 7
 #define ATTRIBUTE_OBJECT_NORMAL_X 11
 #define ATTRIBUTE_OBJECT_NORMAL_Y 12

@@ -46,7 +46,7 @@ struct RenderOptions {
   DebugView debug_view;
   std::string aov;
   Changes<render_scene::Display> display_changes;
-  /** Of gpu::backend_names. */
+  /** One of gpu::backend_names. */
   std::string backend = "auto";
   bool is_explained = false;
   std::string json;

@@ -21,7 +21,7 @@ struct Limits {
   int buffer_texels_max = 65536;
   std::size_t uniform_block_bytes_max = 65536;
   std::size_t storage_block_bytes_max = std::size_t(1) << 27U;
-  /** Of ShaderInterface::push_constant_size_bytes. Vulkan guarantees 128. */
+  /** Largest ShaderInterface::push_constant_size_bytes. Vulkan guarantees 128. */
   std::size_t push_constant_bytes_max = 65536;
   int color_attachment_max = 8;
   /** Largest SamplerDesc::anisotropy; 1 where the device has none. */

@@ -87,7 +87,7 @@ struct Field {
   std::function<py::object(const ScenePtr &scene, const T &value)> get;
   /** \throws py::type_error for a value of another type, py::value_error for one out of range, with the reason */
   std::function<void(const ScenePtr &scene, T &value, py::handle set)> set;
-  /** Of the row that the property is made from, if it is made from one. */
+  /** The row that the property is made from, if there is one. */
   std::optional<scene::Description> row{};
   /** The words or enumerators of the values, or for false and true. */
   std::vector<std::string> words{};

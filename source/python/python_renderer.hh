@@ -131,7 +131,7 @@ class Renderer {
     /** Outlives the renderer. */
     ScenePtr scene;
     eevee::SceneRenderer renderer;
-    /** Of refine(), in the size of the viewport. */
+    /** The target of refine(), in the size of the viewport. */
     std::optional<draw::TargetTexture> shown{};
   };
 

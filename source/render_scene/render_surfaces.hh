@@ -17,7 +17,7 @@ struct TextureSet {
   std::array<scene::Handle<scene::Texture>, scene::texture_inputs.size()> textures{};
   /** The use of that of the base colour, by use_of(). */
   scene::ImageUse base_color_use = scene::ImageUse::Color;
-  /** Of the base colour texture's alpha; 0: it is no mask. */
+  /** Limit for the alpha of the base colour texture; 0: it is no mask. */
   float mask_cutoff = 0.0F;
 
   auto operator<=>(const TextureSet &) const = default;

@@ -162,7 +162,7 @@ class CoveredParts {
   const Image &image_;
   float least_;
   int least_byte_ = 0;
-  /** Of the linear filter, in 1/255; empty: texels are covered or not. */
+  /** The covered part of each texel under the linear filter, in 1/255; empty: texels are covered or not. */
   std::vector<std::uint8_t> parts_;
 };
 

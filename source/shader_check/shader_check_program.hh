@@ -33,15 +33,15 @@ struct ProgramBinding {
     std::vector<Array> arrays;
   };
   Kind kind = Kind::UniformBlock;
-  /** Of a block, the name of the block. */
+  /** For blocks, the name of the block, not of an instance. */
   std::string name;
-  /** Of textures and images. */
+  /** Type of a texture or an image; empty for blocks. */
   std::string type;
   int set = 0;
   /** -1 if the shader gives none. */
   int slot = -1;
   /**
-   * Of blocks: the end of the last member, and in OpenGL, for uniform blocks, the end of its row of 16 bytes. An array
+   * For blocks: the end of the last member, and in OpenGL, for uniform blocks, the end of its row of 16 bytes. An array
    * without a size counts as empty.
    */
   std::uint32_t size_bytes = 0;

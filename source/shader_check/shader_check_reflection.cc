@@ -304,7 +304,7 @@ void add_bindings(const std::vector<Declaration> &declarations, ProgramBinding::
   }
 }
 
-/** Of a program that is linked for a target with SPIR-V. */
+/** The interface of a program that is linked for a target with SPIR-V. */
 ProgramInterface interface_of(Compilation &compilation, CheckTarget target)
 {
   ProgramInterface result;

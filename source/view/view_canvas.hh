@@ -41,7 +41,7 @@ class Canvas {
 
  private:
   glm::ivec2 size_px_{0};
-  /** Of texture_. */
+  /** The device of texture_. */
   gpu::Device *device_ = nullptr;
   std::optional<draw::TargetTexture> texture_;
 };

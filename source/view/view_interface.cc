@@ -14,7 +14,7 @@ namespace gnomon::view {
 
 namespace {
 
-/** Of the window alone, so that the library of hosts does not have them. */
+/** Only the window has this source, so that the library of hosts does not. */
 constexpr const char *interface_lib = R"(#include "shared/slots_shared.h"
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {

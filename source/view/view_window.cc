@@ -193,7 +193,7 @@ void Window::end_frame()
 bool Window::swap()
 {
   const glm::ivec2 size = size_px();
-  // Nothing is seen of a window without pixels.
+  // A window without pixels shows nothing.
   return std::exchange(has_screen_, false) ? device_->present() : size.x == 0 || size.y == 0;
 }
 

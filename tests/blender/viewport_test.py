@@ -123,7 +123,7 @@ def steps():
     linear = picture[0][::-1, :, :3]
     encoded = numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
     error = numpy.quantile(abs(screenshot() - numpy.clip(encoded, 0, 1)), 0.95)
-    # It is 0.003, less than a step of 8 bits. Blender draws a text over a hundredth of the picture.
+    # The error is 0.003, less than a step of 8 bits. Blender draws a text over a hundredth of the picture.
     assert error < 0.004, error
 
     def moved():

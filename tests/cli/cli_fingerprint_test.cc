@@ -52,7 +52,7 @@ TEST(SceneFingerprint, IsThatOfTheContent)
   expect_other(scene.meshes().first(), [](scene::Mesh &mesh) { mesh.positions[0].x = 0.5F; });
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.parent_from_node[3].x = 1e-9; });
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.is_visible = false; });
-  // Of mattes.
+  // Mattes have the name.
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.name = "other"; });
   expect_other(scene.lamps().first(), [](scene::Lamp &lamp) { lamp.shadow.bias = 2.0F; });
   expect_other(scene.cameras().first(), [](scene::Camera &camera) { camera.near = 0.2F; });

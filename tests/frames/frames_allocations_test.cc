@@ -73,9 +73,9 @@ class FrameAllocations : public testing::Test {
   }
 
   /**
-   * Of \a frame_count frames after two rounds of as many. Each writes the picture and its depth to a target. The first
-   * round begins without shadows. The second begins with those of the last frame, as all later rounds, and so draws
-   * cascades in other combinations, each with a framebuffer.
+   * Counts the allocations of \a frame_count frames after two rounds of as many. Each writes the picture and its depth
+   * to a target. The first round begins without shadows. The second begins with those of the last frame, as all later
+   * rounds, and so draws cascades in other combinations, each with a framebuffer.
    */
   template <typename Camera>
   Allocations of_third_round(const Settings &settings, Camera &&camera)

@@ -73,7 +73,7 @@ TEST_P(HostFramebufferTest, OnlyTheRectangleChanges)
     expect_part(host.pixels(), before, {255, 0, 51, 153});
     draw(host, glm::vec4(1), {.clear_color = glm::vec4(0, 1, 0, 0), .viewport = part, .scissor = part}, State::None);
     expect_part(host.pixels(), before, {0, 255, 0, 0});
-    // Nothing is discarded.
+    // The rest of the framebuffer is not discarded.
     draw(host, glm::vec4(1),
          {.color_load = LoadAction::DontCare, .color_store = StoreAction::DontCare, .scissor = part}, State::None);
     expect_part(host.pixels(), before, {0, 255, 0, 0});

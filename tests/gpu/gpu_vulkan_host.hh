@@ -219,7 +219,7 @@ class VulkanTestHost {
     check(of_device<PFN_vkMapMemory>("vkMapMemory")(device, buffer.memory, 0, size_bytes, 0, &buffer.mapped), "map");
     return buffer;
   }
-  /** Of vertices or indices. */
+  /** A buffer of vertices or indices. */
   template <typename T>
   Buffer make_buffer(const std::vector<T> &values)
   {

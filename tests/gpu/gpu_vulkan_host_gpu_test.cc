@@ -73,7 +73,7 @@ void main()
 };
 
 constexpr glm::ivec2 size_px{6, 4};
-/** Of the host, before draws. */
+/** The host's colour before draws. */
 constexpr std::array<float, 4> before = {0.2F, 0.4F, 0.6F, 0.8F};
 constexpr Texel before_bytes = {51, 102, 153, 204};
 

@@ -39,7 +39,7 @@ class Bodies {
   /** An object whose triangles are traced. */
   struct Body {
     scene::Handle<scene::Mesh> mesh;
-    /** Of the mesh's shape. */
+    /** Revision of the mesh's shape. */
     scene::Revision shape = 0;
     /** In render_scene::MaterialTable. */
     std::uint32_t material = 0;

@@ -207,7 +207,7 @@ class GlDevice final : public Device {
   /** The objects in the context are not deleted, because it was not current when the device was destroyed. */
   bool is_abandoned_ = false;
   bool is_lost_ = false;
-  /** Of textures, since the last driver_trim(). */
+  /** Bytes of the textures that were destroyed since the last driver_trim(). */
   std::size_t destroyed_bytes_ = 0;
   /**
    * NVIDIA's driver (580.159): if a depth attachment is cleared to the value of its previous clear, later depth tests

@@ -164,7 +164,7 @@ int rank_of(VkPhysicalDeviceType type)
   }
 }
 
-/** Of the library of Vulkan, which stays loaded. */
+/** Entry point of Vulkan's library, which stays loaded. */
 PFN_vkGetInstanceProcAddr load_loader()
 {
   void *library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);

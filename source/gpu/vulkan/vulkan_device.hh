@@ -50,13 +50,13 @@ class VulkanDevice final : public Device {
   using PoolSizes = std::array<VkDeviceSize, pool_count>;
 
   struct VulkanTexture {
-    /** Of TextureKind::Flat and Array. */
+    /** For TextureKind::Flat and Array. */
     VulkanImage image;
-    /** Of TextureKind::Buffer. */
+    /** For TextureKind::Buffer. */
     VulkanBuffer buffer;
     VkBufferView buffer_view = VK_NULL_HANDLE;
     TextureDesc desc;
-    /** Of the image, for passes that look up what they draw into (PassActions::reads_attachments). */
+    /** Copy of the image for passes that look up what they draw into (PassActions::reads_attachments). */
     std::optional<VulkanImage> copy;
   };
   struct VulkanAttachment {

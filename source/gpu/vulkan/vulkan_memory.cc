@@ -14,7 +14,7 @@ namespace {
 /** Most resources need no greater alignment. */
 constexpr VkDeviceSize granule_bytes = 256;
 constexpr VkDeviceSize block_bytes_max = VkDeviceSize(16) << 20U;
-/** Of a heap, so that small heaps are not used up by one block. */
+/** Least number of blocks in a heap, so that one block does not use up a small heap. */
 constexpr VkDeviceSize blocks_in_heap_min = 16;
 
 /** Flags that memory for \a use must have, and those that it should and should not have. */

@@ -25,7 +25,7 @@ using VertexTypes = std::array<VertexType, vertex_stream_count>;
 /** What a pipeline of a program depends on; the rest is dynamic. */
 struct PipelineKey {
   static constexpr std::size_t color_count_max = 8;
-  /** Of State, what cannot be dynamic. */
+  /** The part of State that cannot be dynamic. */
   std::uint32_t state = 0;
   /** VK_FORMAT_UNDEFINED: there is no such attachment. */
   std::array<VkFormat, color_count_max> colors{};

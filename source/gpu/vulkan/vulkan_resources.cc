@@ -44,10 +44,10 @@ bool is_layered(const TextureDesc &desc, const AttachmentLayout &layout)
   return desc.kind == TextureKind::Array && (layout.layer == all_layers || layout.layer_count > 1);
 }
 
-/** Of texels in buffers: a multiple of each texel's size, and of four. */
+/** Alignment of texels in buffers, bytes: a multiple of each texel's size, and of four. */
 constexpr VkDeviceSize texel_alignment = 16;
 
-/** Of uploads that the device has not finished. */
+/** Largest total of uploads that the device has not finished, bytes. */
 constexpr VkDeviceSize stream_bytes_max = VkDeviceSize(128) << 20U;
 
 }  // namespace

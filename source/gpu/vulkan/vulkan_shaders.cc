@@ -8,7 +8,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-// Of the SPIR-V specification. Debian's package of its headers is no dependency for these few numbers.
+// Numbers of the SPIR-V specification. They are too few to depend on Debian's package of its headers.
 constexpr std::uint32_t spirv_magic = 0x07230203;
 constexpr std::size_t spirv_header_words = 5;
 enum class Op : std::uint32_t {

@@ -14,7 +14,7 @@ struct VulkanBinding {
   std::uint32_t slot = 0;
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   VkShaderStageFlags stages = 0;
-  /** Of a texture: it is an array, or compares depths. */
+  /** Whether a texture is an array, and whether it compares depths. */
   bool is_array = false;
   bool is_comparison = false;
 };

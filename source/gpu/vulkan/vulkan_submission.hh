@@ -66,7 +66,7 @@ class VulkanSubmissions {
   std::uint64_t number_ = 1;
   /** Number of the last one that the device has accepted; 0: none. */
   std::uint64_t accepted_ = 0;
-  /** Of the open submission. */
+  /** Semaphores of the open submission. */
   std::vector<VkSemaphoreSubmitInfo> waits_;
   std::vector<VkSemaphoreSubmitInfo> signals_;
   VkCommandBuffer open_ = VK_NULL_HANDLE;

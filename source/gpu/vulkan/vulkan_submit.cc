@@ -408,7 +408,7 @@ void VulkanDevice::bind_descriptors()
     return;
   }
   const VkDescriptorSet set = descriptors_.allocate(list_.program->set_layout());
-  // Of all bindings, so that pointers to them stay.
+  // Sized for all bindings, so that pointers to the elements stay valid.
   std::vector<VkDescriptorImageInfo> images(bindings.size());
   std::vector<VkDescriptorBufferInfo> buffers(bindings.size());
   std::vector<VkWriteDescriptorSet> writes(bindings.size());

@@ -150,7 +150,7 @@ bool GlslangProgram::add(StageSource &source, CheckTarget target, bool needs_slo
   shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
   shader.setPreamble(source.preamble().c_str());
   const int version = set_target(shader, language, target);
-  // Nothing is mapped without a call of mapIO().
+  // glslang maps nothing without a call of mapIO().
   shader.setAutoMapBindings(!needs_slots);
   shader.setAutoMapLocations(!needs_slots);
   glslang::TShader::ForbidIncluder none;

@@ -260,7 +260,7 @@ struct LineDirective {
   std::string_view file;
 };
 
-/** Of `#line LINE`, `#line LINE NUMBER` or `#line LINE "NAME"`; empty without a number. */
+/** Reads `#line LINE`, `#line LINE NUMBER` or `#line LINE "NAME"`. \return empty without a number */
 std::optional<LineDirective> line_directive(std::string_view text)
 {
   gpu::TextScanner scanner(text);

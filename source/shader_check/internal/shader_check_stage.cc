@@ -59,13 +59,13 @@ struct SpirvType {
     std::string name;
     Decorations decorations;
   };
-  /** Of a struct, as far as they have a name or a decoration. */
+  /** Members of a struct that have a name or a decoration. */
   std::map<std::uint32_t, Member> members;
 };
 
 struct SpirvVariable {
   std::uint32_t id = 0;
-  /** Of the pointer. */
+  /** Type of the pointer. */
   std::uint32_t type = 0;
   spv::StorageClass storage = spv::StorageClassFunction;
 };

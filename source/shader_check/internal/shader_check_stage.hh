@@ -17,7 +17,7 @@ struct DeclaredType {
   std::string scalar;
   /** 1: scalars, structs and others. */
   int vector_size = 1;
-  /** Of a matrix; 0: no matrix. */
+  /** Rows of a matrix; 0: no matrix. */
   int row_count = 0;
   bool is_struct = false;
   /** The sizes of arrays, outermost first; 0: the shader gives none. */
@@ -41,7 +41,7 @@ struct BlockMember {
   /** Name of the struct that declares it; empty for the block itself. */
   std::string structure;
   SourcePosition position;
-  /** The type and the place in the block. Of read_spirv() alone. */
+  /** The type and the place in the block. Only read_spirv() sets them. */
   DeclaredType type{};
   std::uint32_t offset_bytes = 0;
   std::uint32_t size_bytes = 0;

@@ -240,7 +240,7 @@ TEST(BudgetControllerTest, ThePartsOfShadowsOfACallFitIntoItsRest)
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, 5, true), 1);
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 5, true), 1);
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 5, false), 0);
-  // Of many parts, plan a sixteenth.
+  // With many parts, plan a sixteenth.
   EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 348, true), 22);
   EXPECT_EQ(controller.plan_rows(0.01, 1.0, 640, 7, 360, true), 7);
 }

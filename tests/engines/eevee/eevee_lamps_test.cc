@@ -136,7 +136,7 @@ TEST(Lamps, WholeHighlightsNeedLobesThatAreNarrowAtTheNearestSurface)
     set_highlights(lamps, placed, placed.size(), sample_count, receivers_ws);
     return lamps.highlight_alpha;
   };
-  // Of `sample_count` points in the lamp's solid angle, a lobe of 4 π alpha² contains HIGHLIGHT_LOBE_POINTS.
+  // A lobe of 4 π alpha² contains HIGHLIGHT_LOBE_POINTS of the `sample_count` points in the lamp's solid angle.
   const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(std::atan(0.5 / 1.5)));
   const double expected = std::sqrt(double(HIGHLIGHT_LOBE_POINTS) / 256.0 * solid_angle / (4.0 * std::numbers::pi));
   const scene::Bounds below{{-5.0F, -5.0F, -5.0F}, {5.0F, 0.5F, 5.0F}};

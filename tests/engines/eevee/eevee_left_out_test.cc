@@ -335,7 +335,7 @@ TEST_F(LeftOut, TheTreeNamesTheStepThatWroteWhatAStepReads)
     return node_at(taken.at(name).tree, {"passes", step, "reads"}).why;
   };
   EXPECT_EQ(reads("full", "deferred_lit").substr(0, 17), "depth of gbuffer,");
-  // Of several steps that write it, the last.
+  // If several steps write it, the report names the last.
   test::expect_contains(reads("full", "lit"),
                         "depth of forward_depth, shadow_cubes of shadows, shadow_maps of shadows");
   EXPECT_EQ(reads("no shadow", "lit"), "depth of forward_depth");

@@ -28,7 +28,7 @@ class WorldOcclusionTest : public testing::Test {
   {
     return test::add_object(scene, box, placed(min, max));
   }
-  /** Of the unit box of add_box_mesh, which is from -1 to 1. */
+  /** Transform of the box of add_box_mesh, which is from -1 to 1. */
   static glm::dmat4 placed(const glm::dvec3 &min, const glm::dvec3 &max)
   {
     return glm::scale(glm::translate(glm::dmat4(1.0), 0.5 * (min + max)), 0.5 * (max - min));
