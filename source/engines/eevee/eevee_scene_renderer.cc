@@ -24,6 +24,13 @@ void SceneRenderer::sync()
   is_synced_ = true;
 }
 
+void SceneRenderer::set_clip_planes(std::vector<glm::dvec4> planes_ws)
+{
+  // This checks them: the caller learns of a fault here and not in a later draw.
+  static_cast<void>(draw::View().with_clip_planes(render_scene_.relative(planes_ws)));
+  clip_planes_ws_ = std::move(planes_ws);
+}
+
 draw::View SceneRenderer::view_of(const scene::PlacedCamera &camera) const
 {
   const draw::View view = eevee::view_of(camera, viewport_.size_px(), render_scene_.origin_ws())

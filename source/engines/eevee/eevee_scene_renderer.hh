@@ -126,13 +126,10 @@ class SceneRenderer {
 
   /**
    * Show only what is on the side of \a planes_ws with dot(plane, (p, 1)) >= 0: draw::View::clip_planes, in world space
-   * of the scene. Takes effect with the next draw or view_of, which throw gpu::Error if they are more than 6 or not
-   * finite.
+   * of the scene. Takes effect with the next draw or view_of. \throws gpu::Error, and keeps the planes of before, if
+   * they are more than draw::View::clip_plane_max or not finite
    */
-  void set_clip_planes(std::vector<glm::dvec4> planes_ws)
-  {
-    clip_planes_ws_ = std::move(planes_ws);
-  }
+  void set_clip_planes(std::vector<glm::dvec4> planes_ws);
 
   /** The view of \a camera in the coordinates of the render scene, without what is left out. */
   [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;

@@ -12,6 +12,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace gnomon::overlay {
@@ -428,8 +429,9 @@ TEST_F(ClipPlanesTest, DepthOfAPictureOfSeveralSamplesIsCutToo)
   const std::vector<float> none = depths({{0, 0, 0, -1}});
   EXPECT_EQ(std::ranges::count(none, none.front()), std::ptrdiff_t(none.size()));
   EXPECT_GT(std::ranges::count_if(whole, [&](float depth) { return depth != none.front(); }), 500);
-  renderer.set_clip_planes(std::vector<glm::dvec4>(7));
-  EXPECT_THROW(renderer.draw(camera), gpu::Error);
+  EXPECT_THROW(renderer.set_clip_planes(std::vector<glm::dvec4>(7)), gpu::Error);
+  EXPECT_THROW(renderer.set_clip_planes({{0, 0, 1, std::numeric_limits<double>::infinity()}}), gpu::Error);
+  EXPECT_EQ(renderer.view_of(camera).clip_planes().size(), 1U) << "the planes of before";
 }
 
 }  // namespace
