@@ -17,11 +17,23 @@ float mask_threshold()
 }
 
 /**
+ * Offset from the middle of the pixel, within a sample's share of it. A mask whose pattern is aligned with the pixels has the same phase
+ * at all of their middles, so that its share there is wrong.
+ */
+vec2 mask_offset_px()
+{
+  // Two lattices that are unlike that of mask_threshold.
+  uvec2 pixel = uvec2(gl_FragCoord.xy);
+  vec2 place = vec2(to_unit(2654435769u * pixel.x + 1779033703u * pixel.y), to_unit(1395630315u * pixel.x + 3518319155u * pixel.y));
+  return (fract(place + view.mask_shift * vec2(1.0, 7.236068)) - 0.5) * exp2(view.texture_lod_bias);
+}
+
+/**
  * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is the same all around it, the pixel is covered as often as
- * the texels in it: levels above 0 of a mask's texture store the covered share. At the edge of a shape that is larger than the pixel, a
- * look-up of level 0 has half of the error, and the right mean. A mask is the same all around if its shares over 1 pixel, over 4 and over
- * the distance between samples are alike, or if those over 4, 8 and 16 pixels are equal: a weight that varied with the mask's own pattern
- * within a pixel would change the mean.
+ * the texels in it: levels above 0 of a mask's texture store the covered share. Elsewhere, such as at the edge of a shape that is larger
+ * than the pixel, it is covered as one place in it is, with the right mean. A mask is the same all around if its shares over 1 pixel, over
+ * 4 and over the distance between samples are alike, or if those over 4, 8 and 16 pixels are equal: a weight that varied with the mask's
+ * own pattern within a pixel would change the mean.
  */
 bool is_pixel_cut_out(float mask_cutoff)
 {
@@ -35,11 +47,16 @@ bool is_pixel_cut_out(float mask_cutoff)
     return factor < mask_cutoff;
   }
 #endif
-  bool is_open = factor * textureLod(base_color_texture, surface_uv, 0.0).a < mask_cutoff;
+  vec2 across = dFdx(surface_uv);
+  vec2 up = dFdy(surface_uv);
   // x: the level that the sampler reads, which is 0 without mip levels. y: the level by size.
   vec2 lod = textureQueryLod(base_color_texture, surface_uv);
   float level = lod.y + view.texture_lod_bias;
-  if (lod.x <= 0.0 || level <= 0.75 || factor < mask_cutoff) {
+  bool is_small = lod.x > 0.0 && level > 0.75;
+  // From about two texels in a pixel on: the edge of a larger texel is sharp.
+  vec2 offset_px = is_small ? mask_offset_px() * clamp(12.0 * (level - 0.87), 0.0, 1.0) : vec2(0.0);
+  bool is_open = factor * textureLod(base_color_texture, surface_uv + offset_px.x * across + offset_px.y * up, 0.0).a < mask_cutoff;
+  if (!is_small || factor < mask_cutoff) {
     return is_open;
   }
   // The image itself, of level 0, has colors of texels that are cut out.

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 #include <vector>
 
 namespace gnomon::cli {
@@ -190,9 +192,15 @@ glm::ivec2 size_of_window(const Imath::Box2i &window)
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }
 
-ExrInput::ExrInput(const fs::path &path) : path_(path), file_bytes_(fs::file_size(path))
+ExrInput::ExrInput(const fs::path &path) : path_(path)
 {
+  std::error_code error;
+  file_bytes_ = fs::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);
+  if (error || !stream) {
+    throw std::runtime_error(
+        fmt::format("cannot be read: {}", (error ? error : std::error_code(errno, std::generic_category())).message()));
+  }
   checksum_ = scan_headers(read_from(stream), file_bytes_);
   // Rows of a file that is cut off are not looked for: such a file is refused.
   file_.emplace(path.c_str(), Imf::globalThreadCount(), false);

@@ -107,8 +107,8 @@ ExrLayer chosen(const std::vector<ExrLayer> &layers, const std::string &label)
     return *found;
   }
   if (layers.size() > 1) {
-    throw std::runtime_error(
-        fmt::format("has several layers, of which --world-layer names that of a world: {}", names_of(layers)));
+    throw std::runtime_error(fmt::format(
+        "has several layers, and none without a name (a world's is chosen by --world-layer): {}", names_of(layers)));
   }
   return layers.front();
 }

@@ -21,7 +21,7 @@ void add_world_options(CLI::App &command, WorldOptions &options)
                      "World that lights the scene: an equirectangular HDR or EXR picture, a radiance R,G,B, studio, or "
                      "none (default: the scene's own; studio if the scene has neither lamps nor a world)");
   command.add_option("--world-layer", options.layer,
-                     "Layer of an EXR file of --world, where it has several and none without a name");
+                     "Layer of the world's EXR file, where it has several and none without a name");
   command.add_option("--world-strength", options.strength, "Factor of the world's radiance")
       ->capture_default_str()
       ->check(number_range(0.0, 1e6));
@@ -104,11 +104,11 @@ void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOpti
   }
 }
 
-scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options)
+scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options, const std::string &world_layer)
 {
   try {
     gltf::ImportOptions all = options;
-    all.read_picture = [](const std::filesystem::path &picture) { return read_world_picture(picture); };
+    all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, world_layer); };
     return gltf::import_gltf(path, all);
   }
   catch (const gltf::UnknownVariant &unknown) {
@@ -134,6 +134,11 @@ static scene::World world_of(const WorldOptions &options, std::vector<std::strin
   if (const std::optional<glm::vec3> color = parse_color(options.world)) {
     return {.color = *color};
   }
+  if (std::error_code ignored; !std::filesystem::exists(options.world, ignored)) {
+    throw std::runtime_error(
+        fmt::format("--world '{}': no file has this name, and it is no radiance: three finite numbers R,G,B, 0 or more",
+                    options.world));
+  }
   scene::WorldPicture picture = read_world_picture(options.world, options.layer);
   if (const std::string clamped = clamp_radiances(picture); !clamped.empty()) {
     warnings.push_back(fmt::format("world '{}': {}", options.world, clamped));
@@ -144,6 +149,12 @@ static scene::World world_of(const WorldOptions &options, std::vector<std::strin
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options)
 {
   const bool is_default = options.world.empty();
+  const bool is_file = is_default ? scene.world() && scene.world()->picture
+                                  : options.world != "none" && options.world != "studio" && !parse_color(options.world);
+  if (!options.layer.empty() && !is_file) {
+    scene.warnings.push_back(
+        fmt::format("--world-layer {}: has no effect, because the world is no picture", options.layer));
+  }
   if (options.world == "none") {
     scene.set_world(std::nullopt);
     return false;

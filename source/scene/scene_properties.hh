@@ -681,13 +681,14 @@ constexpr void Material::for_each_property(Visit &&visit)
                                          .path = "alphaMode",
                                          .aspect = unsigned(Coverage),
                                          .sentence = "How alpha is used."}));
-  visit(property(&Material::alpha_cutoff, {.name = "alpha_cutoff",
-                                           .label = "Cutoff",
-                                           .max = 1,
-                                           .path = "alphaCutoff",
-                                           .is_animated = true,
-                                           .aspect = unsigned(Coverage),
-                                           .sentence = "Mask: the surface is cut out where alpha is below."}));
+  visit(property(&Material::alpha_cutoff,
+                 {.name = "alpha_cutoff",
+                  .label = "Cutoff",
+                  .max = 2,
+                  .path = "alphaCutoff",
+                  .is_animated = true,
+                  .aspect = unsigned(Coverage),
+                  .sentence = "Mask: the surface is cut out where alpha is below: above 1, everywhere."}));
   visit(property(&Material::metallic, {.name = "metallic",
                                        .label = "Metallic",
                                        .max = 1,

@@ -187,7 +187,8 @@ void add_material_inputs(std::vector<StabilityCase> &cases)
   };
   add("metallic", "pbrMetallicRoughness/metallicFactor", share);
   add("roughness", "pbrMetallicRoughness/roughnessFactor", share);
-  add("alpha cutoff", "alphaCutoff", share);
+  add("alpha cutoff", "alphaCutoff",
+      inputs({0.0, 5e-324, 0.5, 1.0, 2.0}, Expected::Accepted) + inputs({-1.0, 2.01, 1e39, 1e300}, Expected::Reported));
   add("specular", "extensions/KHR_materials_specular/specularFactor", share);
   add("emissive strength", "extensions/KHR_materials_emissive_strength/emissiveStrength", open);
   add("ior", "extensions/KHR_materials_ior/ior",

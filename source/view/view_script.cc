@@ -25,7 +25,9 @@ Script::Script(const std::filesystem::path &path) : path_(path)
 {
   std::ifstream file(path);
   std::ostringstream text;
-  if (!(text << file.rdbuf())) {
+  // An empty file is an empty script, but the operator counts no characters as a failure.
+  const bool is_empty = file.peek() == std::ifstream::traits_type::eof() && file.eof() && !file.bad();
+  if (!is_empty && !(text << file.rdbuf())) {
     throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
   }
   try {

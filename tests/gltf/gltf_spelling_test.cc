@@ -251,11 +251,19 @@ TEST(GltfSpelling, ContainersOfEachWriterAreRead)
   EXPECT_WARNING(import_glb(glb_of({json_chunk, binary, json_chunk})), "is a second JSON chunk, which is not read");
   EXPECT_WARNING(import_glb(glb_of({json_chunk, binary, binary})), "is a second BIN chunk, which is not read");
   EXPECT_WARNING(import_glb(glb_of({json_chunk, binary}, "1234")), "bytes after the last chunk are not read: 4");
-  EXPECT_WARNING(import_glb(glb_of({json_chunk, binary}) + "abc"), "the bytes at the end are not read");
+  EXPECT_WARNING(import_glb(glb_of({json_chunk, binary}) + "abc"), "bytes after the last chunk are not read: 3");
   EXPECT_WARNING(import_glb(glb_of({{"JSON", text + " "}, binary})), "is not a multiple of 4");
   for (const std::size_t count : {1, 2, 3, 4, 64}) {
     EXPECT_WARNING(import_glb(glb_of({{"JSON", text + std::string(count, '\0')}, binary})),
                    "JSON: zero bytes at its end are dropped: " + std::to_string(count));
+  }
+  EXPECT_WARNING(import_glb(glb_of({{"JSON", text + std::string(1, '\0') + "   "}, binary})),
+                 "JSON: zero bytes at its end are dropped: 1");
+  // The header's length ends before the chunks, within one, or is 0.
+  const std::string whole = glb_of({json_chunk, binary});
+  for (const std::size_t length : {std::size_t(0), std::size_t(24), 20 + text.size()}) {
+    EXPECT_WARNING(import_glb(whole.substr(0, 8) + u32(length) + whole.substr(12)),
+                   "GLB header: it says " + std::to_string(length) + " bytes");
   }
 }
 

@@ -69,6 +69,7 @@ class AnimationImporter {
     animation.name = source.name.empty() ? "animation " + std::to_string(index) : source.name;
     std::map<int, std::size_t> node_places;
     std::set<std::string> targets;
+    bool has_fault = false;
     for (const Model::AnimationChannel &channel : source.channels) {
       try {
         const std::string target = target_of(channel);
@@ -82,10 +83,14 @@ class AnimationImporter {
       }
       catch (const Fault &fault) {
         warnings_.add_counted(what, 1, std::string("channel left out: ") + fault.what());
+        has_fault = true;
       }
     }
     if (!animation.nodes.empty() || !animation.values.empty()) {
       scene_.animations.push_back(std::move(animation));
+    }
+    else if (!has_fault) {
+      warnings_.add(what, source.channels.empty() ? "has no channels" : "its channels have no target");
     }
   }
 

@@ -419,9 +419,12 @@ Model parse_document(std::span<const unsigned char> json, Warnings &warnings)
 {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   std::string_view whole(reinterpret_cast<const char *>(json.data()), json.size());
-  if (whole.ends_with('\0') && whole.find_last_not_of('\0') != whole.npos) {
-    const std::size_t size = whole.find_last_not_of('\0') + 1;
-    warnings.add("JSON", "zero bytes at its end are dropped: " + std::to_string(whole.size() - size));
+  // Padding by zero bytes, which may stand before and after padding by spaces.
+  constexpr std::string_view padding("\0 \t\r\n", 5);
+  const std::size_t size = whole.find_last_not_of(padding) + 1;
+  const std::ptrdiff_t zero_count = std::ranges::count(whole.substr(size), '\0');
+  if (size > 0 && zero_count > 0) {
+    warnings.add("JSON", "zero bytes at its end are dropped: " + std::to_string(zero_count));
     whole = whole.substr(0, size);
   }
   std::string_view text = whole;

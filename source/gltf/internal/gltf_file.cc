@@ -106,18 +106,22 @@ Chunks split_glb(ByteSpan bytes, Warnings &warnings)
                                   std::to_string(bytes.size()));
   }
   if (length < bytes.size()) {
-    warnings.add("GLB header", "it says " + std::to_string(length) + " bytes, and the file has " +
-                                   std::to_string(bytes.size()) + ": the bytes at the end are not read");
+    warnings.add("GLB header",
+                 "it says " + std::to_string(length) + " bytes, and the file has " + std::to_string(bytes.size()));
   }
   std::optional<ByteSpan> json;
   std::optional<ByteSpan> binary;
   std::size_t offset = file_header_size;
-  while (length >= offset && length - offset >= chunk_header_size) {
+  while (bytes.size() - offset >= chunk_header_size) {
     const std::size_t chunk_size = read_u32(bytes, offset);
     const std::uint32_t type = read_u32(bytes, offset + 4);
+    // The header may say too few bytes. Other bytes after the end that it names are no chunks.
+    if (offset >= length && type != json_type && type != binary_type) {
+      break;
+    }
     const std::string what = "GLB chunk at byte " + std::to_string(offset);
     offset += chunk_header_size;
-    if (chunk_size > length - offset) {
+    if (chunk_size > bytes.size() - offset) {
       throw Fault("GLB chunk", "runs past the end of the file");
     }
     if (chunk_size % 4 != 0) {
@@ -138,8 +142,8 @@ Chunks split_glb(ByteSpan bytes, Warnings &warnings)
   if (!json) {
     throw Fault("GLB", "has no JSON chunk");
   }
-  if (offset < length) {
-    warnings.add("GLB", "bytes after the last chunk are not read: " + std::to_string(length - offset));
+  if (offset < bytes.size()) {
+    warnings.add("GLB", "bytes after the last chunk are not read: " + std::to_string(bytes.size() - offset));
   }
   return {*json, binary.value_or(ByteSpan())};
 }

@@ -210,7 +210,7 @@ class MaterialReader {
 
   void read_alpha()
   {
-    result_.alpha_cutoff = clamped("alphaCutoff", source_.alpha_cutoff, 1.0);
+    result_.alpha_cutoff = clamped("alphaCutoff", source_.alpha_cutoff, 2.0);
     if (source_.alpha_mode == "MASK") {
       result_.alpha_mode = AlphaMode::Mask;
     }

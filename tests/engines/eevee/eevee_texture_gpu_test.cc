@@ -208,6 +208,36 @@ TEST_F(DistantMaskGpuTest, CoversItsShareWherePixelsAreAsLargeAsItsPattern)
   }
 }
 
+TEST_F(DistantMaskGpuTest, CoversItsShareBesideAnotherPattern)
+{
+  // Four texels in a pixel. Columns are aligned with the pixels, in the left half only.
+  const std::uint32_t width = 160;
+  Bytes texels;
+  for (std::uint32_t i = 0; i < width * width; i++) {
+    const std::uint32_t x = i % width;
+    const Bytes texel = x < width / 2 && x % 8 < 2 ? Bytes{0, 200, 0, 255} : Bytes{255, 0, 0, 0};
+    texels.insert(texels.end(), texel.begin(), texel.end());
+  }
+  add(add_textured(width, texels), {0, 0, 0});
+  scene.edit(scene.textures().first(), [&](scene::Texture &texture) { texture.mip = scene::MipFilter::Linear; });
+  test::edit_material(scene, 0, [](scene::Material &material) { material.is_unlit = true; });
+  for (const int sample_count : {1, 4, 16}) {
+    const Picture picture = render({.sample_count = sample_count});
+    float left = 0.0F;
+    float right = 0.0F;
+    for (int y = 16; y < 48; y++) {
+      for (int x = 0; x < 16; x++) {
+        left += picture.at(16 + x, y).a / (16.0F * 32.0F);
+        right += picture.at(32 + x, y).a / (16.0F * 32.0F);
+      }
+    }
+    // Independent pixels would have a standard deviation of 0.016. The pixel's middle is at the edge of a column: 0.5
+    // without an offset.
+    EXPECT_NEAR(left, 0.25F, 0.03F) << sample_count;
+    EXPECT_NEAR(right, 0.0F, 0.01F) << sample_count;
+  }
+}
+
 TEST_F(DistantMaskGpuTest, TheEdgeOfAShapeIsSharp)
 {
   // 1.2 to 1.8 texels in a pixel.
