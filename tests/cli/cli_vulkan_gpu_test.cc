@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `gnomon --backend vulkan` on the driver.
 #include "cli_process.hh"
+#include "gltf/gltf_builder.hh"
 #include "gpu_device_fixture.hh"
 
 #include <OpenImageIO/imagebuf.h>
@@ -8,13 +9,16 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <regex>
 #include <span>
 #include <vector>
 
 namespace gnomon {
 namespace {
 
+using nlohmann::json;
 using test::example;
 using test::Finished;
 
@@ -33,6 +37,44 @@ class CliVulkanTest : public test::ProgramTest {
     std::filesystem::path path = folder / "program";
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     return path;
+  }
+  /** The program on a device that seems to lack \a masks of VULKAN_MASKS. */
+  std::filesystem::path masked_program(const std::string &masks)
+  {
+    return program_with("LD_LIBRARY_PATH='" GNOMON_VULKAN_FAULTS "' VULKAN_MASKS=" + masks);
+  }
+  /** Lamps without shadows that reach 8 m, and glass triangles, above a plate. */
+  static std::string crowd_gltf(int lamp_count, int glass_triangle_count)
+  {
+    test::GltfBuilder builder;
+    builder.document["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_transmission"};
+    builder.document["materials"] = {
+        {{"doubleSided", true}},
+        {{"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}}}}},
+    };
+    const int positions = builder.positions({-10, 0, -10, 10, 0, -10, 10, 0, 10, -10, 0, 10});
+    const auto add_mesh = [&](int material, const std::vector<std::uint32_t> &corners, double size) {
+      const json primitive{{"attributes", {{"POSITION", positions}}},
+                           {"indices", builder.accessor(corners, test::Uint32, "SCALAR")},
+                           {"material", material}};
+      builder.node(
+          {{"mesh", builder.mesh(primitive)}, {"scale", {size, size, size}}, {"translation", {0, 1 - size, 0}}});
+    };
+    add_mesh(0, {0, 2, 1, 0, 3, 2}, 1);
+    std::vector<std::uint32_t> corners;
+    for (int i = 0; i < glass_triangle_count; i++) {
+      corners.insert(corners.end(), {0, 2, 1});
+    }
+    if (!corners.empty()) {
+      add_mesh(1, corners, 0.1);
+    }
+    for (int i = 0; i < lamp_count; i++) {
+      const double of_ring = std::sqrt((i + 0.5) / lamp_count);
+      const double angle = 2.4 * i;
+      builder.light({{"type", "point"}, {"intensity", 683.0 / lamp_count}, {"range", 8}}, {{"gnomon_shadow", "none"}},
+                    {{"translation", {9 * of_ring * std::cos(angle), 2.0, 9 * of_ring * std::sin(angle)}}});
+    }
+    return builder.gltf();
   }
   /** Root of the mean square difference between the pictures in two files. */
   double rms_difference(const std::string &first, const std::string &second)
@@ -58,15 +100,15 @@ TEST_F(CliVulkanTest, ThePictureIsThatOfOpenGl)
   // The states with which a program is drawn seldom differ, so that few pipelines are made.
   std::map<std::string, int> pipelines;
   int pipeline_count = 0;
-  const nlohmann::json trace = nlohmann::json::parse(read("vulkan.trace"));
-  for (const nlohmann::json &span : trace["traceEvents"]) {
+  const json trace = json::parse(read("vulkan.trace"));
+  for (const json &span : trace["traceEvents"]) {
     if (span["name"] == "make pipeline") {
       pipelines[span["args"]["of"]]++;
       pipeline_count++;
     }
   }
   EXPECT_FALSE(pipelines.empty());
-  EXPECT_EQ(nlohmann::json::parse(read("vulkan.json"))["counters"]["pipelines_made"], pipeline_count);
+  EXPECT_EQ(json::parse(read("vulkan.json"))["counters"]["pipelines_made"], pipeline_count);
   for (const auto &[program, count] : pipelines) {
     EXPECT_LE(count, 2) << program;
   }
@@ -81,7 +123,7 @@ TEST_F(CliVulkanTest, AProgramIsNotCompiledAgainInWarmFrames)
                                       "--size 16x9 --samples 1 --repeat 4 --backend vulkan -o out.exr --json out.json",
                                   program_with("MESA_SHADER_CACHE_DISABLE=true"));
     ASSERT_EQ(finished.status, 0) << finished.err;
-    const auto seconds = nlohmann::json::parse(read("out.json"))["frame_seconds"].get<std::vector<double>>();
+    const auto seconds = json::parse(read("out.json"))["frame_seconds"].get<std::vector<double>>();
     // The driver counts no compilations. The shortest of the frames is not that which something else has held up.
     EXPECT_LT(std::ranges::min(std::span(seconds).subspan(1)), 0.1 * seconds.front()) << lights;
   }
@@ -101,6 +143,60 @@ TEST_F(CliVulkanTest, EachWayOfDrawingLayersGivesTheSamePictureAndExplainNamesIt
       EXPECT_EQ(finished.out.find("-+ " + other_program + " ") != std::string::npos, other == way) << finished.out;
     }
     EXPECT_EQ(rms_difference("geometry.exr", way + ".exr"), 0.0) << way;
+  }
+}
+
+// Devices may have four sets of bindings, 16 inputs of vertices, texel buffers of 65 536 texels, and offsets of 256
+// bytes.
+TEST_F(CliVulkanTest, TheLeastLimitsOfVulkanGiveTheSamePictureAndExplainNamesTheSizes)
+{
+  write("crowd.gltf", crowd_gltf(1000, 12));
+  for (const std::string &scene : {example("plaza"), std::string("crowd.gltf")}) {
+    std::map<std::string, Finished> of_masks;
+    for (const std::string masks : {"none", "limits", "shaderOutputLayer", "shaderOutputLayer,geometryShader,limits"}) {
+      const Finished finished =
+          run("render " + scene + " --size 64x36 --samples 1 --shadow-size 128 --lamp-units raw " +
+                  "--backend vulkan --explain --json run.json -o " + masks + ".exr",
+              masked_program(masks));
+      ASSERT_EQ(finished.status, 0) << finished.err;
+      EXPECT_EQ(finished.err.find("exceeded: "), std::string::npos) << finished.err;
+      EXPECT_EQ(json::parse(read("run.json"))["limits"], json::array()) << masks;
+      EXPECT_EQ(rms_difference("none.exr", masks + ".exr"), 0.0) << scene << " without " << masks;
+      of_masks[masks] = finished;
+    }
+    const auto expect_part = [&](const std::string &masks, const std::string &part) {
+      EXPECT_NE(of_masks[masks].out.find(part), std::string::npos) << masks << part << of_masks[masks].out;
+    };
+    if (scene == "crowd.gltf") {
+      // The lists hold each lamp once for each part of the view that it reaches. Fewer parts leave the light the same.
+      const auto list_texels = [&](const std::string &masks) {
+        std::smatch match;
+        EXPECT_TRUE(std::regex_search(of_masks[masks].out, match, std::regex("light_lists  .* ([0-9]+)x1 R32F")));
+        return std::stoi(match.str(1));
+      };
+      EXPECT_GT(list_texels("none"), 65536);
+      EXPECT_LE(list_texels("limits"), 65536);
+    }
+    else {
+      expect_part("none", "-+ eevee_shadow_layered ");
+      expect_part("limits", "-+ eevee_shadow_layered ");
+      expect_part("shaderOutputLayer", "-+ eevee_shadow_geometry ");
+      expect_part("shaderOutputLayer,geometryShader,limits", "-+ eevee_shadow ");
+    }
+  }
+}
+
+TEST_F(CliVulkanTest, WhatDoesNotFitIntoSmallTexelBuffersIsNamed)
+{
+  // Seven texels for each lamp, and eight for each triangle.
+  write("crowd.gltf", crowd_gltf(10000, 9000));
+  const std::string render = "render crowd.gltf --size 16x9 --samples 1 --shadow none --backend vulkan -o out.exr";
+  EXPECT_EQ(run(render + " --strict", masked_program("none")).status, 0);
+  const Finished finished = run(render, masked_program("limits"));
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(finished.err.find("exceeded: "), std::string::npos) << finished.err;
+  for (const char *part : {"limit: 638 of 10000 lamps give no light", "limit: 9000 triangles transmit light"}) {
+    EXPECT_NE(finished.err.find(part), std::string::npos) << finished.err;
   }
 }
 

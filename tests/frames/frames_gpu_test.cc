@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frames/frames_scene.hh"
-#include "frames/frames_threads.hh"
+#include "frames/frames_failures.hh"
 #include "gpu/gpu_gl_hook.hh"
 #include "gpu_device_fixture.hh"
 
@@ -14,17 +13,19 @@
 namespace gnomon::eevee {
 namespace {
 
+using test::Bytes;
+using test::FailingAllocation;
 using test::FramesScene;
+using test::fresh_picture;
 using Frames = test::GpuDeviceTest;
-using Bytes = std::vector<std::byte>;
-
-constexpr glm::ivec2 size_px{48, 32};
+/** With a driver of OpenGL that fails on demand. */
+using GlFrames = test::GlDeviceTest;
 
 /** The picture of each frame. */
 std::vector<Bytes> pictures_of(gpu::Device &device, int frame_count, bool has_two_threads)
 {
   FramesScene frames;
-  SceneRenderer renderer(device, frames.scene, size_px, test::frames_settings());
+  SceneRenderer renderer(device, frames.scene, test::frames_size_px, test::frames_settings());
   const std::array<draw::Engine *, 1> engines = {&renderer.engine()};
   std::vector<Bytes> pictures;
   constexpr std::uint64_t tag = 1000;
@@ -56,20 +57,7 @@ TEST_F(Frames, OfTwoThreadsAreThoseOfOne)
 /** glGetError reports this many calls without an error, then that memory is out, once; negative: never. */
 int calls_until_error = -1;
 
-/** After the edits of the first \a edit_count frames. */
-Bytes fresh_picture(gpu::Device &device, int edit_count)
-{
-  FramesScene frames;
-  for (int frame = 0; frame < edit_count; frame++) {
-    frames.edit(frame);
-  }
-  SceneRenderer renderer(device, frames.scene, size_px, test::frames_settings());
-  renderer.sync();
-  renderer.draw(FramesScene::camera(0));
-  return device.read(renderer.engine().radiance(renderer.viewport()));
-}
-
-TEST_F(Frames, ThatFailAreFollowedByTheRightPicture)
+TEST_F(GlFrames, ThatFailAreFollowedByTheRightPicture)
 {
   const std::array<Bytes, 2> expected = {fresh_picture(*device, 1), fresh_picture(*device, 2)};
   const test::Hook hook(
@@ -79,7 +67,7 @@ TEST_F(Frames, ThatFailAreFollowedByTheRightPicture)
   for (const int calls : {0, 5, 20}) {
     SCOPED_TRACE(calls);
     FramesScene frames;
-    SceneRenderer renderer(*device, frames.scene, size_px, test::frames_settings());
+    SceneRenderer renderer(*device, frames.scene, test::frames_size_px, test::frames_settings());
     frames.edit(0);
     const auto draw = [&] {
       renderer.sync();
@@ -104,20 +92,8 @@ TEST_F(Frames, ThatFailAreFollowedByTheRightPicture)
   EXPECT_GT(failure_count, 3);
 }
 
-/** Allocations on the device up to the one that fails; negative: none fails. */
-int allocations_until_failure = -1;
-bool is_out_of_memory = false;
-
-/** \return whether the allocation that is about to be made fails */
-bool fails_to_allocate()
-{
-  const bool fails = allocations_until_failure >= 0 && allocations_until_failure-- == 0;
-  is_out_of_memory = is_out_of_memory || fails;
-  return fails;
-}
-
 /** Each allocation of a buffer or texture fails once, in a first picture with lamps and shadows of all kinds. */
-TEST_F(Frames, WhoseAllocationsFailOneAtATimeAreFollowedByTheRightPicture)
+TEST_F(GlFrames, WhoseAllocationsFailOneAtATimeAreFollowedByTheRightPicture)
 {
   // Afterwards the function pointers are those of the driver, and the device has the programs.
   const Bytes expected = fresh_picture(*device, 1);
@@ -127,44 +103,22 @@ TEST_F(Frames, WhoseAllocationsFailOneAtATimeAreFollowedByTheRightPicture)
   static const auto get_error = epoxy_glGetError;
   const test::Hook buffers(
       epoxy_glBufferData, +[](GLenum target, GLsizeiptr size, const void *data, GLenum usage) {
-        fails_to_allocate() ? void() : buffer_data(target, size, data, usage);
+        FailingAllocation::fails() ? void() : buffer_data(target, size, data, usage);
       });
   const test::Hook flat(
       epoxy_glTextureStorage2D, +[](GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height) {
-        fails_to_allocate() ? void() : texture_2d(texture, levels, format, width, height);
+        FailingAllocation::fails() ? void() : texture_2d(texture, levels, format, width, height);
       });
   const test::Hook layered(
       epoxy_glTextureStorage3D,
       +[](GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei layers) {
-        fails_to_allocate() ? void() : texture_3d(texture, levels, format, width, height, layers);
+        FailingAllocation::fails() ? void() : texture_3d(texture, levels, format, width, height, layers);
       });
   const test::Hook errors(
-      epoxy_glGetError,
-      +[]() -> GLenum { return std::exchange(is_out_of_memory, false) ? GLenum(GL_OUT_OF_MEMORY) : get_error(); });
-  FramesScene frames;
-  frames.edit(0);
-  int failure_count = 0;
-  for (bool has_failed = true; has_failed; failure_count += has_failed) {
-    SCOPED_TRACE(failure_count);
-    SceneRenderer renderer(*device, frames.scene, size_px, test::frames_settings());
-    allocations_until_failure = failure_count;
-    has_failed = false;
-    try {
-      renderer.sync();
-      renderer.draw(FramesScene::camera(0));
-    }
-    catch (const gpu::Error &error) {
-      has_failed = true;
-      EXPECT_NE(std::string_view(error.what()).find("the driver is out of memory"), std::string_view::npos)
-          << error.what();
-    }
-    allocations_until_failure = -1;
-    renderer.sync();
-    renderer.draw(FramesScene::camera(0));
-    ASSERT_EQ(device->read(renderer.engine().radiance(renderer.viewport())), expected);
-  }
-  EXPECT_GE(failure_count, 15);
-  EXPECT_TRUE(device->live_resources().empty());
+      epoxy_glGetError, +[]() -> GLenum {
+        return std::exchange(FailingAllocation::is_out_of_memory, false) ? GLenum(GL_OUT_OF_MEMORY) : get_error();
+      });
+  test::expect_pictures_after_each_failed_allocation(*device, expected);
 }
 
 }  // namespace

@@ -278,6 +278,24 @@ TEST_F(VulkanFailure, AFailedCallIsAnErrorThatNamesTheThingAndTheDeviceRemainsUs
   EXPECT_EQ(drawn(3), expected);
 }
 
+// SwiftShader has textures of 2048 layers, and draws into 256 at once. Its limit for lamps with shadows was 42.
+TEST_F(VulkanFailure, MoreLayersThanAPassCanDrawAreRefusedByNameAndOneOfThemIsDrawn)
+{
+  context->limits.maxFramebufferLayers = 256;
+  const Texture array = device->create_texture(
+      {.name = "many", .kind = TextureKind::Array, .format = Format::RGBA32F, .width = 2, .height = 2, .layers = 300});
+  test::expect_contains(test::error_of([&] {
+                          static_cast<void>(device->create_framebuffer({"all", {{&array, all_layers}}, {}}));
+                        }),
+                        "framebuffer 'all': 300 layers, but this device draws into at most 256 at once");
+  const Framebuffer last = device->create_framebuffer({"last", {{&array, 299}}, {}});
+  CommandList list;
+  list.begin_pass("last", last, {.clear_color = glm::vec4(3)});
+  list.end_pass();
+  device->submit(list);
+  EXPECT_EQ(read_as<glm::vec4>(*device, array, 299), std::vector<glm::vec4>(4, glm::vec4(3)));
+}
+
 /** By each function that may report it: at the start and the end of recording, at submission, while waiting, at reads.
  */
 TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)

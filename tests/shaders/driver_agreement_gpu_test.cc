@@ -159,7 +159,7 @@ Offsets offsets_of(const std::vector<gpu::ShaderInterface::Member> &members)
 }
 
 /** Compares one variant after another with the driver, and collects what some variant must have. */
-class DriverAgreement : public test::GpuDeviceTest {
+class DriverAgreement : public test::GlDeviceTest {
  protected:
   /** Checks \a variants of each program, and that some of them use each block. */
   void check(std::vector<Feature> (*variants)(const ShaderDeclaration &declaration))

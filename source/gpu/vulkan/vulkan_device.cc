@@ -16,7 +16,7 @@ Limits limits_of(const VulkanContext &context)
   Limits limits;
   // A texture of any size can be attached to a framebuffer.
   limits.texture_size_max = int(std::min({of.maxImageDimension2D, of.maxFramebufferWidth, of.maxFramebufferHeight}));
-  limits.array_layers_max = int(std::min(of.maxImageArrayLayers, of.maxFramebufferLayers));
+  limits.array_layers_max = int(of.maxImageArrayLayers);
   limits.buffer_texels_max = int(std::min(of.maxTexelBufferElements, std::uint32_t(1) << 30U));
   limits.uniform_block_bytes_max = of.maxUniformBufferRange;
   limits.storage_block_bytes_max = of.maxStorageBufferRange;
@@ -120,7 +120,7 @@ void VulkanDevice::create_dummies()
   view.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
   view.buffer = dummies_.buffer.handle;
   view.format = VK_FORMAT_R8G8B8A8_UNORM;
-  view.range = VK_WHOLE_SIZE;
+  view.range = block_bytes;
   context_->check(context_->vk.vkCreateBufferView(context_->device, &view, nullptr, &dummies_.buffer_view), what);
   barriers_.before_copy(VK_NULL_HANDLE, {dummies_.buffer.handle, 0, dummies_.buffer.size_bytes});
   barriers_.before_copy(VK_NULL_HANDLE, {dummies_.white.handle, 0, dummies_.white.size_bytes});

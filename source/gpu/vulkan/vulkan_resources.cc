@@ -71,7 +71,7 @@ void VulkanDevice::texture_create(ResourceId id, const TextureDesc &desc)
     view.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
     view.buffer = texture.buffer.handle;
     view.format = vulkan_format(desc.format);
-    view.range = VK_WHOLE_SIZE;
+    view.range = desc.size_bytes();
     const VkResult result = context_->vk.vkCreateBufferView(context_->device, &view, nullptr, &texture.buffer_view);
     if (result != VK_SUCCESS) {
       memory_.destroy(texture.buffer);
@@ -207,6 +207,10 @@ void VulkanDevice::framebuffer_create(ResourceId id, const FramebufferLayout &la
     }
     if (layout.depth.texture != 0) {
       framebuffer.depth = make(layout.depth);
+    }
+    if (framebuffer.layer_count > context_->limits.maxFramebufferLayers) {
+      throw Error("{}: {} layers, but this device draws into at most {} at once", what, framebuffer.layer_count,
+                  context_->limits.maxFramebufferLayers);
     }
   }
   catch (...) {

@@ -52,6 +52,10 @@ class TestViewRenderer {
   Picture draw(const TestView &test_view, const DrawSettings &settings = {});
   /** Report of the last draw with \a settings. */
   [[nodiscard]] eevee::Report report(const DrawSettings &settings);
+  [[nodiscard]] const gpu::Limits &limits() const
+  {
+    return device_.limits();
+  }
 
  private:
   struct Stage {
