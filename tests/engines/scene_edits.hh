@@ -269,28 +269,66 @@ inline void fill_streams(scene::Mesh &mesh)
   }
 }
 
-/**
- * A scene of an object with one material, all properties of which are edited. \a is_rich: it has all texture slots, a
- * coat and emission before; otherwise it has none of them.
+/** What the texture slots of a material have before edits. */
+enum class SlotTextures { None, Texel, Image };
+
+/** Adds a spot whose shadow keeps nothing of pictures before: neither a near plane that follows casters nor an extent.
  */
-inline EditedScene material_scene(bool is_rich, const std::string &name)
+inline void add_spot(scene::Scene &scene)
+{
+  keep_near_plane(scene, add_lamp(scene, scene::LampKind::Spot, {-1.5F, -1, 3}, {1.5F, 1, -3}, 20.0F));
+}
+
+/** A scene with a square that shows a texture several times, all properties of which are edited, and its image. */
+inline EditedScene texture_scene(const std::string &name)
 {
   EditedScene edited{name, {}, {}};
   scene::Scene &scene = edited.scene;
   const Ground ground(scene);
-  // Neither a near plane that follows casters nor the maps of a sun keep anything of pictures before.
-  keep_near_plane(scene, add_lamp(scene, scene::LampKind::Spot, {-1.5F, -1, 3}, {1.5F, 1, -3}, 20.0F));
+  add_spot(scene);
   const auto texture = add_texture(scene, 4, some_texels(4, 1));
   const auto other = add_texture(scene, 2, some_texels(2, 2));
+  const auto material = add_material(scene, glm::vec3(1.0F));
+  scene.edit(material, [&](scene::Material &one) { one.base_color_texture = texture; });
+  const auto mesh = add_square_mesh(scene, material);
+  scene.edit(mesh, [](scene::Mesh &one) { one.uvs = {{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}; });
+  add_object(scene, mesh, glm::scale(glm::translate(glm::dmat4(1.0), {0.2, -1.1, 0.02}), glm::dvec3(0.7)));
+  add_property_edits(edited, texture, "texture");
+  add_edit(edited, texture, "texture: image", [&](scene::Texture &one) { one.image = scene.textures()[other].image; });
+  const auto image = scene.textures()[texture].image;
+  add_edit(edited, image, "image: a texel", [](scene::Image &one) { one.texels[5] ^= 0x80; });
+  add_edit(edited, image, "image: size", [](scene::Image &one) {
+    one.width = one.height = 3;
+    one.texels = some_texels(3, 7);
+  });
+  add_edit(edited, image, "image: name", [](scene::Image &one) { one.name = "other"; });
+  return edited;
+}
+
+/**
+ * A scene of an object with one material, all properties of which are edited; with \a before it also has a coat and
+ * emission. Mesa compiles a program again for each sampler, and where a texture has one level and no longer several.
+ * Slots are therefore switched on and off with textures of one texel, as that of an empty slot is, and samplers are
+ * edited in texture_scene().
+ */
+inline EditedScene material_scene(SlotTextures before, const std::string &name)
+{
+  EditedScene edited{name, {}, {}};
+  scene::Scene &scene = edited.scene;
+  const Ground ground(scene);
+  add_spot(scene);
+  const auto texture = add_texture(scene, 4, some_texels(4, 1));
+  const auto other = add_texture(scene, 2, some_texels(2, 2));
+  const auto texel = add_texture(scene, 1, {150, 170, 200, 220});
   const auto material = add_material(scene, {0.7F, 0.5F, 0.3F});
   const auto function = scene.add(scene::SurfaceFunction{
       "dim", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n  result.base_color *= 0.5;\n}\n"});
   scene.edit(material, [&](scene::Material &one) {
     one.specular_color = glm::vec3(1.0F);
     one.roughness = 0.4F;
-    if (is_rich) {
+    if (before != SlotTextures::None) {
       for (const scene::TextureInput &input : scene::texture_inputs) {
-        one.*input.slot = texture;
+        one.*input.slot = before == SlotTextures::Image ? texture : texel;
       }
       one.coat = 0.5F;
       one.emissive = glm::vec3(0.1F);
@@ -301,32 +339,25 @@ inline EditedScene material_scene(bool is_rich, const std::string &name)
   scene.edit(mesh, [](scene::Mesh &one) { fill_streams(one); });
   const auto node =
       add_object(scene, mesh, glm::scale(glm::translate(glm::dmat4(1.0), {-1.2, 0.3, 1.0}), glm::dvec3(0.6, 0.5, 0.4)));
-  add_property_edits(edited, material, name);
   for (const scene::TextureInput &input : scene::texture_inputs) {
     const std::string slot = name + ": " + std::string(input.name);
-    add_edit(edited, material, slot + " on or off", [&](scene::Material &one) {
-      one.*input.slot = is_rich ? scene::TextureSlot() : scene::TextureSlot(texture);
-    });
-    if (is_rich) {
+    if (before == SlotTextures::Image) {
       add_edit(edited, material, slot + ".texture", [&](scene::Material &one) { (one.*input.slot).texture = other; });
       add_property_edits(edited, material, slot,
                          [&](scene::Material &one) -> scene::TextureSlot & { return one.*input.slot; });
     }
+    else {
+      add_edit(edited, material, slot + " on or off", [&](scene::Material &one) {
+        one.*input.slot = before == SlotTextures::Texel ? scene::TextureSlot() : scene::TextureSlot(texel);
+      });
+    }
   }
+  if (before == SlotTextures::Texel) {
+    return edited;
+  }
+  add_property_edits(edited, material, name);
   add_edit(edited, material, name + ": surface_function",
            [&](scene::Material &one) { one.surface_function = function; });
-  if (is_rich) {
-    add_property_edits(edited, texture, "texture");
-    add_edit(edited, texture, "texture: image",
-             [&](scene::Texture &one) { one.image = scene.textures()[other].image; });
-    const auto image = scene.textures()[texture].image;
-    add_edit(edited, image, "image: a texel", [](scene::Image &one) { one.texels[5] ^= 0x80; });
-    add_edit(edited, image, "image: size", [](scene::Image &one) {
-      one.width = one.height = 3;
-      one.texels = some_texels(3, 7);
-    });
-    add_edit(edited, image, "image: name", [](scene::Image &one) { one.name = "other"; });
-  }
   add_edit(edited, mesh, "mesh: material", [&](scene::Mesh &one) { one.material = ground.material; });
   add_edit(edited, mesh, "mesh: no material", [](scene::Mesh &one) { one.material = {}; });
   add_edit(edited, mesh, "mesh: a position", [](scene::Mesh &one) { one.positions[3].z += 0.5F; });
@@ -631,8 +662,10 @@ inline std::vector<EditedScene> edited_scenes()
   scenes.push_back(lamp_scene(scene::LampKind::Spot, "spot"));
   scenes.push_back(lamp_scene(scene::LampKind::Hemi, "hemi"));
   scenes.push_back(lamp_scene(scene::LampKind::Area, "area"));
-  scenes.push_back(material_scene(false, "plain material"));
-  scenes.push_back(material_scene(true, "rich material"));
+  scenes.push_back(material_scene(SlotTextures::None, "plain material"));
+  scenes.push_back(material_scene(SlotTextures::Texel, "material of texels"));
+  scenes.push_back(material_scene(SlotTextures::Image, "rich material"));
+  scenes.push_back(texture_scene("texture"));
   scenes.push_back(structure_scene("structure"));
   scenes.push_back(world_scene(false, "even world"));
   scenes.push_back(world_scene(true, "world with a picture"));

@@ -318,7 +318,8 @@ scene::Scene scene_of_all_lights()
 
 TEST_F(SingleEditsGpu, OfEachSettingGiveThePictureOfANewRenderer)
 {
-  const std::array<scene::Scene, 2> scenes = {scene_of_all_lights(), test::material_scene(false, "hard").scene};
+  const std::array<scene::Scene, 2> scenes = {scene_of_all_lights(),
+                                              test::material_scene(test::SlotTextures::None, "hard").scene};
   for (std::size_t i = 0; i < scenes.size(); i++) {
     for (const int sample_count : {1, 4}) {
       const Settings settings = small_settings(sample_count);
