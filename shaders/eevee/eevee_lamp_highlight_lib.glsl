@@ -93,7 +93,7 @@ vec3 lamp_highlight(HighlightLamp lamp, MaterialData material, Surface surface, 
   float above = part_above(flat_lamp);
   // llvmpipe evaluates what follows for all pixels, and skips the loop over the corners where no pixel needs it.
   flat_lamp.corner_count = share > 0.0 ? flat_lamp.corner_count : 0;
-  vec3 specular = specular_of(flat_lamp, material, surface, shading.frame, shading.ltc_matrix);
+  vec3 specular = specular_of(flat_lamp, material, surface, shading);
   scale *= cos_l > 0.0 ? 1.0 / max(above, 1e-3) : 0.0;
   return share > 0.0 ? lamp.light.color * specular * scale : vec3(0.0);
 }

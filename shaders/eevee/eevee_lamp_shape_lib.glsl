@@ -70,15 +70,27 @@ FlatLamp round_lamp(vec3 to_light, float tangent, float irradiance, ShadingFrame
   return FlatLamp(center, axis_x, cross(center, axis_x), ELLIPSE_CORNERS, irradiance * INV_PI / max(sine_sq, 1e-30));
 }
 
+/** Values at the shaded point that are the same for all lamps. */
+struct ShapeShading {
+  ShadingFrame frame;
+#ifdef USE_SPECULAR
+  vec4 ltc_matrix;
+  /** Of the specular lobe, with Fresnel terms. */
+  vec3 albedo;
+#endif
+};
+
 #ifdef USE_SPECULAR
 /**
  * Specular radiance towards the viewer for a light colour of 1. It is the integral of the transformed cosine of
- * \a ltc_matrix over the lamp, times the ratio of the lobe to the transformed cosine in the mean direction of the light. If
+ * ltc_matrix over the lamp, times the ratio of the lobe to the transformed cosine in the mean direction of the light. If
  * the lamp is small relative to the lobe, the result is the value of the lobe. If the lobe is small relative to the lamp,
- * the ratio is the albedo of the lobe. \a frame: of \a surface.
+ * the result is the albedo of the lobe.
  */
-vec3 specular_of(FlatLamp lamp, MaterialData material, Surface surface, ShadingFrame frame, vec4 ltc_matrix)
+vec3 specular_of(FlatLamp lamp, MaterialData material, Surface surface, ShapeShading shading)
 {
+  ShadingFrame frame = shading.frame;
+  vec4 ltc_matrix = shading.ltc_matrix;
   vec3 view = in_frame(frame, surface.view_ws);
   vec3 flux = flat_flux(ltc_transformed(ltc_matrix, lamp.center), ltc_transformed(ltc_matrix, lamp.axis_x),
                         ltc_transformed(ltc_matrix, lamp.axis_y), lamp.corner_count, ltc_up(ltc_matrix));
@@ -91,13 +103,8 @@ vec3 specular_of(FlatLamp lamp, MaterialData material, Surface surface, ShadingF
   float lobe = ggx_lobe(to_light.z, max(view.z, 1e-4), cos_h, material.alpha) * to_light.z;
   float ratio = min(lobe / max(ltc_density(ltc_matrix, to_light), 1e-30), LTC_RATIO_MAX);
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(view, half_vector));
-#ifdef USE_MULTISCATTER
-  // The ratio in one direction is wrong for a lamp that covers most of the lobe. All of the lobe is its albedo, which is known here.
+  // The ratio in one direction is wrong for a lamp that covers most of the lobe. All of the lobe is its albedo.
   float covered = ltc_covered(ltc_matrix, flux.z);
-  vec3 whole = single_albedo(surface.multiscatter.view, material.specular_f0, material.specular_f90);
-  return lamp.radiance * mix(fresnel * (flux.z * ratio), whole * covered, covered);
-#else
-  return fresnel * (lamp.radiance * flux.z * ratio);
-#endif
+  return lamp.radiance * mix(fresnel * (flux.z * ratio), shading.albedo * covered, covered);
 }
 #endif

@@ -392,7 +392,7 @@ vec3 direct_light(MaterialData material, Surface surface)
   layers.coat_world = world_shading;
   vec3 base = world_light(material, surface, layers.base_lobe.bent_normal_ws);
   // The lobe of sheen is wide: its mean radiance is that of a cosine around the normal.
-  bool is_sampled = branch_value(world.is_sampled) != 0;
+  bool is_sampled = branch_value(world.sample_count) > 0;
   vec3 mean = is_sampled ? vec3(0.0) : material.occlusion * world_diffuse(world_parts(surface), surface);
   vec3 sum = layered(base, layers.sheen_albedo * mean, coat);
 #elif defined(USE_WORLD)

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Light of whole lamps, and lamps that are shaded as a whole. Included by eevee_light_lib.glsl, after what both read.
 
-/** Values at the shaded point that are the same for all lamps that are shaded as a whole. */
-struct ShapeShading {
-  ShadingFrame frame;
-#ifdef USE_SPECULAR
-  vec4 ltc_matrix;
-#endif
-};
-
 ShapeShading shape_shading(MaterialData material, Surface surface)
 {
   ShapeShading shading;
   shading.frame = shading_frame(surface);
 #ifdef USE_SPECULAR
   float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
-  shading.ltc_matrix = textureLod(ltc_table, ltc_texco(material.alpha, cos_v), 0.0);
+  vec2 texco = ltc_texco(material.alpha, cos_v);
+  shading.ltc_matrix = textureLod(ltc_table, texco, 0.0);
+#ifdef USE_MULTISCATTER
+  shading.albedo = single_albedo(surface.multiscatter.view, material.specular_f0, material.specular_f90);
+#else
+  shading.albedo = specular_albedo(textureLod(ltc_table, texco + vec2(0.5, 0.0), 0.0), material.specular_f0, material.specular_f90);
+#endif
 #endif
   return shading;
 }
@@ -161,7 +159,7 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
   vec3 radiance = diffuse_share(material, surface, center.to_light) * base_light.irradiance;
 #endif
 #ifdef USE_SPECULAR
-  vec3 specular = specular_of(base_light.lamp, material, surface, base_shading.frame, base_shading.ltc_matrix);
+  vec3 specular = specular_of(base_light.lamp, material, surface, base_shading);
 #ifdef USE_LAYERS
   if (layers.base_lobe.alphas.x > layers.base_lobe.alphas.y) {
     specular = anisotropic_specular_of(base_light, material, surface, center.to_light);
@@ -170,8 +168,7 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
   radiance += specular;
 #endif
 #ifdef USE_LAYERS
-  vec3 coat = specular_of(coat_light.lamp, layers.coat_material, layers.coat_surface, coat_shading.frame,
-                          coat_shading.ltc_matrix);
+  vec3 coat = specular_of(coat_light.lamp, layers.coat_material, layers.coat_surface, coat_shading);
 #ifdef USE_MULTISCATTER
   coat += smooth_of(coat_light, layers.coat_material, layers.coat_surface);
 #endif

@@ -92,6 +92,7 @@ float mirror_seen = 1.0;
 #endif
 
 #ifdef USE_SPECULAR
+/** a of the first layer: sum of world_mirror_weight over the sampled directions of the picture / number of samples. */
 layout(binding = WORLD_LEVELS_SLOT) uniform sampler2DArray world_levels;
 
 /** Mean radiance of the world over a lobe of \a alpha around the unit vector \a direction. */
@@ -141,8 +142,16 @@ vec3 albedo_of(Surface surface, float alpha, vec3 f0, float f90)
 #ifdef USE_SPECULAR
 /** Values at the shaded point that are the same for all sampled directions of the world. */
 struct WorldShading {
-  /** Specular radiance from `world_levels`, divided by the albedo of a lobe of `alpha` with Fresnel terms of 1. */
+  /** Specular radiance from `world_levels`. */
   vec3 mirrored;
+  /**
+   * Factors of the visibility in the middle of the lobe, divided by the mean over the samples of the sums of world_mirror_weight,
+   * and around it, divided by the albedo of a lobe of `alpha_sampled` with Fresnel terms of 1.
+   */
+  float inner;
+  float outer;
+  /** Unit vector to the world. */
+  vec3 direction_ws;
   /** Fraction of the specular light that comes from `world_levels`. */
   float level_share;
 };
@@ -160,13 +169,24 @@ vec3 world_light(MaterialData material, Surface surface, vec3 mirror_ws)
 #ifdef USE_SPECULAR
   vec3 albedo = albedo_of(surface, material.alpha, material.specular_f0, material.specular_f90);
 #endif
-  if (branch_value(world.is_sampled) != 0) {
+  if (branch_value(world.sample_count) > 0) {
 #ifdef USE_SPECULAR
     world_shading.level_share = 1.0 - smoothstep(0.7, 1.0, material.alpha / world.alpha_sampled);
     world_shading.mirrored = vec3(0.0);
+    world_shading.inner = world_shading.outer = 0.0;
+    world_shading.direction_ws = mirrored_view(surface, mirror_ws);
     if (world_shading.level_share > 0.0) {
+      float weights = textureLod(world_levels, vec3(equirectangular(world_shading.direction_ws), 0.0), 0.0).a;
       float whole = albedo_of(surface, max(material.alpha, world.alpha_sampled), vec3(1.0), 1.0).r;
-      world_shading.mirrored = world_mirrored(material, surface, mirror_ws, albedo) / max(whole, 1e-4);
+      // The part of a GGX lobe that is farther from its middle than the mean of world_mirror_weight in a world of one radiance.
+      float alpha_sq = material.alpha * material.alpha;
+      float outside = alpha_sq / (alpha_sq + world.alpha_sampled * world.alpha_sampled / 8.0);
+      // Near the horizon, some of the directions around the mirrored one have no light, because they are below the surface.
+      float height = dot(surface.normal_ws, world_shading.direction_ws) / (1.414 * world.alpha_sampled);
+      outside = mix(1.0, outside, smoothstep(0.25, 1.0, height));
+      world_shading.mirrored = world_mirrored(material, surface, mirror_ws, albedo);
+      world_shading.inner = (1.0 - outside) / max(weights, 1e-6);
+      world_shading.outer = outside / max(whole, 1e-4);
     }
 #endif
     return vec3(0.0);
@@ -190,9 +210,18 @@ vec3 world_light(MaterialData material, Surface surface, vec3 mirror_ws)
 }
 
 #ifdef USE_SPECULAR
+/** Weight of the visibility of a sampled direction for the mirrored one. */
+float mirror_weight(LightData light, WorldShading shading)
+{
+  float reach_sq = world_mirror_reach_sq(light.radius_sq / float(max(world.sample_count, 1)));
+  vec3 apart = light.forward_ws + shading.direction_ws;
+  return world_mirror_weight(dot(apart, apart) / max(reach_sq, 1e-20));
+}
+
 /**
  * Radiance towards the viewer from a sampled direction of the world, without occlusion. A lobe that is too narrow for the
- * sampled directions reads `world_levels` instead. The directions within a wider lobe then determine its visibility.
+ * sampled directions reads `world_levels` instead. The directions around the mirrored one and those in a wider lobe then determine its
+ * visibility.
  * \a lobe: in this direction, 1/sr, with an alpha of at least WorldBlock::alpha_sampled.
  */
 vec3 world_reflected(LightData light, MaterialData material, Surface surface, WorldShading shading, vec3 half_vector, float lobe,
@@ -200,8 +229,9 @@ vec3 world_reflected(LightData light, MaterialData material, Surface surface, Wo
 {
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
   lobe *= cos_l;
+  float seen = shading.inner * mirror_weight(light, shading) + shading.outer * light.radius_sq * lobe;
   vec3 specular = light.color * fresnel * (lobe * (1.0 - shading.level_share)) +
-                  shading.mirrored * (light.radius_sq * lobe * shading.level_share);
+                  shading.mirrored * (seen * shading.level_share);
 #  ifdef USE_MULTISCATTER
   return light.color * smooth_brdf(material, surface, cos_l) * cos_l + specular;
 #  else

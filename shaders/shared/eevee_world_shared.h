@@ -18,6 +18,9 @@ SHARED_BEGIN
 /** Number of points over all samples in the narrowest lobe that they draw. Narrower lobes are widened to it. */
 #define WORLD_SUN_LOBE_POINTS 4.0f
 
+/** About the number of directions, over all samples, in the area over which a mirrored direction takes their visibility. */
+#define WORLD_MIRROR_DIRECTIONS 6.0f
+
 /** Most probes of the visible parts of the world. */
 #define WORLD_PROBE_MAX 368
 
@@ -36,8 +39,8 @@ SHARED_ASSERT_SIZE(WorldSunPoint, 32)
 struct WorldBlock {
   /** rgb: coefficients of irradiance / π as a polynomial of the normal. \see world_irradiance */
   vec4 harmonics[9];
-  /** 1: lights of the kind LIGHT_WORLD sample the world, and the harmonics are not read. */
-  int is_sampled;
+  /** Of a picture in which lights of the kind LIGHT_WORLD sample the world; the harmonics are not read then. Otherwise 0. */
+  int sample_count;
   /** Minimum alpha of a lobe that contains enough sampled directions. Narrower lobes read `world_levels`. */
   float alpha_sampled;
   /** Index of the first sun of the world in `light_block`. Its suns follow each other. */
@@ -70,6 +73,26 @@ SHARED_FUNCTION vec3 world_irradiance(WorldBlock world, vec3 n)
              world.harmonics[6] * (3.0f * n.z * n.z - 1.0f) + world.harmonics[7] * (n.x * n.z) +
              world.harmonics[8] * (n.x * n.x - n.y * n.y);
   return max(vec3(sum), vec3(0.0f));
+}
+
+/**
+ * Square of the chord up to which a sampled direction stands for the visibility of mirrored directions. \a solid_angle: that the
+ * direction represents in the whole picture, sr.
+ */
+SHARED_FUNCTION float world_mirror_reach_sq(float solid_angle)
+{
+  return min(WORLD_MIRROR_DIRECTIONS * INV_PI * solid_angle, 1.0f);
+}
+
+/**
+ * Weight of a sampled direction for a mirrored one. \a distance_sq: square of their chord / world_mirror_reach_sq. The small outer part
+ * reaches mirrored directions to which no sampled direction is near.
+ */
+SHARED_FUNCTION float world_mirror_weight(float distance_sq)
+{
+  float inner = max(1.0f - distance_sq, 0.0f);
+  float outer = max(1.0f - 0.25f * distance_sq, 0.0f);
+  return inner * inner + 0.05f * outer * outer;
 }
 
 /** Coordinates of a direction in an equirectangular picture, from the left and the bottom, in [0, 1]. \a v: any length but 0. */

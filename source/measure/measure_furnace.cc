@@ -93,7 +93,7 @@ struct Furnace {
     const WholeSpecular specular = whole_specular(sun, {alpha, view});
     const double across = glm::dot(view, glm::normalize(specular.to_light + view));
     const double albedo = shared_double::single_albedo(multiscatter.view, f0, 1.0).x;
-    return glm::mix(fresnel(across) * specular.light, albedo * specular.covered, specular.covered) +
+    return glm::mix(fresnel(across) * specular.by_ratio, albedo * specular.covered, specular.covered) +
            pi * form_factor * smooth_brdf(light);
   }
 

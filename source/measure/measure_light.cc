@@ -136,7 +136,12 @@ WholeSpecular whole_specular(const LampShape &lamp, const SpecularLobe &lobe)
   const auto lobe_value = float(lobe_cosine(lobe, glm::dvec3(to_light)));
   const float ratio =
       std::min(lobe_value / std::max(shared::ltc_density(matrix, to_light), 1e-30F), shared::LTC_RATIO_MAX);
-  return {double(flux.z * ratio), glm::dvec3(to_light), double(shared::ltc_covered(matrix, flux.z))};
+  WholeSpecular result{.by_ratio = double(flux.z * ratio),
+                       .to_light = glm::dvec3(to_light),
+                       .covered = double(shared::ltc_covered(matrix, flux.z))};
+  const auto albedo = double(ltc_texel(shared::ltc_texco(alpha, view.z) + vec2(0.5F, 0.0F)).x);
+  result.light = glm::mix(result.by_ratio, albedo * result.covered, result.covered);
+  return result;
 }
 
 double whole_specular_multi(const LampShape &lamp, const SpecularLobe &lobe)
@@ -144,7 +149,7 @@ double whole_specular_multi(const LampShape &lamp, const SpecularLobe &lobe)
   const WholeSpecular whole = whole_specular(lamp, lobe);
   const vec4 texel = multiscatter_texel(lobe.alpha, lobe.view.z);
   const double albedo = 1.0 - double(shared::lobe_albedo(texel, float(lobe.alpha), float(lobe.view.z)).missing);
-  return glm::mix(whole.light, albedo * whole.covered, whole.covered);
+  return glm::mix(whole.by_ratio, albedo * whole.covered, whole.covered);
 }
 
 double point_diffuse(const LampShape &lamp)

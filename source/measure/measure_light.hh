@@ -63,6 +63,8 @@ inline constexpr int integral_set_count = 8;
 
 struct WholeSpecular {
   double light = 0.0;
+  /** The part of it that the transformed cosine alone gives. */
+  double by_ratio = 0.0;
   /** Mean direction of the light that is reflected, for the Fresnel term. Unit vector; zero if there is no light. */
   glm::dvec3 to_light{0.0};
   /** Part of the lobe that the lamp covers. */

@@ -85,6 +85,22 @@ TEST(LightApproximations, OfASmallLampAreTheIntegral)
   }
 }
 
+TEST(LightApproximations, OfALampAroundANarrowLobeAreItsAlbedo)
+{
+  for (const double roughness : {0.03, 0.05, 0.08, 0.12}) {
+    for (double view_angle = 0.05; view_angle < 1.4; view_angle += 0.05) {
+      const SpecularLobe lobe = lobe_of(roughness, view_angle);
+      const glm::dvec3 mirrored(-lobe.view.x, 0.0, lobe.view.z);
+      const LampShape lamp{.outline = LampOutline::Rectangle,
+                           .center = mirrored,
+                           .axis_x = {0, 0.25, 0},
+                           .axis_y = 0.25 * glm::cross(mirrored, glm::dvec3(0, 1, 0))};
+      const double truth = integrated_specular(lamp, lobe, 512).value;
+      EXPECT_NEAR(whole_specular(lamp, lobe).light / truth, 1.0, 0.01) << roughness << ' ' << view_angle;
+    }
+  }
+}
+
 TEST(LightErrors, OfWholeLampsAreBelowThoseOfPoints)
 {
   for (const LightErrorRow &row : light_errors(4)) {

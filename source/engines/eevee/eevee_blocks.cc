@@ -129,7 +129,7 @@ constexpr auto light_cluster_fields = std::to_array<Field>({
 constexpr std::size_t sun_points_offset = offsetof(WorldBlock, sun_points);
 constexpr auto world_fields = std::to_array<Field>({
     {"world.harmonics", offsetof(WorldBlock, harmonics)},
-    {"world.is_sampled", offsetof(WorldBlock, is_sampled)},
+    {"world.sample_count", offsetof(WorldBlock, sample_count)},
     {"world.alpha_sampled", offsetof(WorldBlock, alpha_sampled)},
     {"world.first_sun", offsetof(WorldBlock, first_sun)},
     {"world.sun_count", offsetof(WorldBlock, sun_count)},

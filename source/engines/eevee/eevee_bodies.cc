@@ -104,10 +104,10 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
   const float turn = world.picture() ? scene.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>) : 0.0F;
   picture_binding_ =
       world.picture() ? draw::TextureBinding{world.picture().id(), world.picture_sampler().id()} : stand_in;
-  Key key{bodies_of(scene, objects, hidden),
-          device.loss_count(),
-          {background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}}};
+  Key key{bodies_of(scene, objects, hidden), device.loss_count()};
+  const Head background{background_color(settings, scene), {0.0F, turn, world.picture() ? 1.0F : 0.0F, 0.0F}};
   if (texels_ && key_ == key) {
+    write_head(device, background);
     return;
   }
   key_.reset();
@@ -135,8 +135,8 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
     boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
   }
   const BoxTree tree(boxes);
-  std::vector<glm::vec4> texels(key.background.begin(), key.background.end());
-  texels[1].x = float(tree.nodes().size());
+  node_count_ = tree.nodes().size();
+  std::vector<glm::vec4> texels(BODY_HEAD_TEXELS);
   write(tree, triangles, texels);
   const int width = std::min(int(std::bit_ceil(texels.size())), device.limits().buffer_texels_max);
   texels.resize(std::size_t(width));
@@ -149,7 +149,19 @@ void Bodies::update(const render_scene::RenderScene &scene, std::span<const Tran
   }
   device.upload(texels_, 0, std::as_bytes(std::span(texels)));
   texels_binding_ = {texels_.id(), sampler_.id()};
+  head_.reset();
+  write_head(device, background);
   key_ = std::move(key);
+}
+
+void Bodies::write_head(gpu::Device &device, Head head)
+{
+  head[1].x = float(node_count_);
+  if (head_ != head) {
+    // The texels after it keep their content.
+    device.upload(texels_, 0, std::as_bytes(std::span(head)));
+    head_ = head;
+  }
 }
 
 void Bodies::free()

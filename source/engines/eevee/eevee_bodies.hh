@@ -54,12 +54,19 @@ class Bodies {
     std::vector<Body> bodies;
     /** gpu::Device::loss_count */
     std::uint64_t losses = 0;
-    std::array<glm::vec4, 2> background{};
 
     bool operator==(const Key &) const = default;
   };
+  /** The first texels: \see eevee_bodies_shared.h */
+  using Head = std::array<glm::vec4, 2>;
+  /** \a head: without the number of nodes. Does nothing if the texture has it. */
+  void write_head(gpu::Device &device, Head head);
+
   /** Empty after an incomplete update. */
   std::optional<Key> key_;
+  /** Empty if it is not written. */
+  std::optional<Head> head_;
+  std::size_t node_count_ = 0;
   gpu::Texture texels_;
   gpu::Sampler sampler_;
   /** Read by recorded passes, which may outlive a texture. */

@@ -134,9 +134,14 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
   }
 }
 
+std::uint32_t LampPoints::stream_of(const Sized &sized, std::uint32_t seed)
+{
+  return shared::mixed_bits(seed) + sized.stream - sized.direction;
+}
+
 LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
 {
-  const std::uint32_t stream = shared::mixed_bits(seed) + sized.stream - sized.direction;
+  const std::uint32_t stream = stream_of(sized, seed);
   const glm::vec3 place = sobol_point(index * sized.direction_count + sized.direction, stream);
   const render_scene::WorldDirection direction = sized.world->at(glm::dvec2(place));
   const double count = sized.direction_count;
@@ -149,9 +154,19 @@ LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::
   return point;
 }
 
+RestDirections LampPoints::rest_directions(std::uint32_t seed) const
+{
+  for (const Sized &sized : sized_) {
+    if (sized.world && sized.world == directions_.distribution.get()) {
+      return {directions_.distribution, sample_count_, directions_.count, stream_of(sized, seed)};
+    }
+  }
+  return {};
+}
+
 LampPoint LampPoints::emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
 {
-  const std::uint32_t stream = shared::mixed_bits(seed) + sized.stream - sized.direction;
+  const std::uint32_t stream = stream_of(sized, seed);
   const scene::EmissivePoint chosen =
       emission_->at(glm::dvec3(sobol_point(index * sized.direction_count + sized.direction, stream)));
   const double area = chosen.area / double(sized.direction_count);

@@ -90,6 +90,8 @@ class LampPoints {
   [[nodiscard]] SampledLampPoints sample(std::uint32_t index, std::uint32_t seed, SampledLampPoints memory = {}) const;
   /** The centres of the lamps. */
   [[nodiscard]] SampledLampPoints centers() const;
+  /** The directions of the samples of a picture. */
+  [[nodiscard]] RestDirections rest_directions(std::uint32_t seed) const;
 
  private:
   struct Sized {
@@ -108,6 +110,8 @@ class LampPoints {
     std::uint32_t direction = 0;
     std::uint32_t direction_count = 1;
   };
+  /** The sequence of the lamps that share the distribution of \a sized. */
+  [[nodiscard]] static std::uint32_t stream_of(const Sized &sized, std::uint32_t seed);
   static void add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed, SampledLampPoints &sampled);
   [[nodiscard]] LampPoint world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
   [[nodiscard]] LampPoint emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;

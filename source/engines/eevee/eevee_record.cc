@@ -31,7 +31,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
                    (materials.has_functions ? lit_function_features : Feature::None) | asked_features(settings_));
   shared.lights.make(device, settings_, read);
   data.lights.make(device);
-  shared.world.update_light(scene_, data.features, settings_);
+  shared.world.update_light(scene_, data.features, settings_,
+                            shared.lights.plan().points.rest_directions(settings_.seed));
   shared.tables.make(device, data.features, read);
 }
 

@@ -3,6 +3,7 @@
 #include "eevee_resource_report.hh"
 
 #include "eevee_settings.hh"
+#include "eevee_sobol.hh"
 #include "eevee_world_occlusion.hh"
 
 #include <fmt/format.h>
@@ -18,6 +19,11 @@
 namespace gnomon::eevee {
 
 static_assert(WORLD_SUN_MAX == render_scene::WorldLight::sun_max);
+
+render_scene::WorldDirection RestDirections::at(std::uint32_t i) const
+{
+  return distribution->at(glm::dvec2(sobol_point(i, stream)));
+}
 
 std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, int direction_count)
 {
@@ -91,7 +97,56 @@ void SceneWorld::sync_occlusion(const render_scene::RenderScene &scene, const Se
   occlusion_key_ = key;
 }
 
-void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings)
+/**
+ * For each texel of WorldLight::rest, the sum of world_mirror_weight over \a rest, divided by the number of samples. 1
+ * without directions.
+ */
+static std::vector<float> mirror_weights(const RestDirections &rest)
+{
+  const glm::ivec2 size = render_scene::WorldLight::size;
+  std::vector<float> weights(std::size_t(size.x) * std::size_t(size.y), rest.distribution ? 0.0F : 1.0F);
+  const int count = rest.distribution ? rest.sample_count * rest.direction_count : 0;
+  for (int i = 0; i < count; i++) {
+    const render_scene::WorldDirection direction = rest.at(std::uint32_t(i));
+    const float reach_sq = shared::world_mirror_reach_sq(float(direction.solid_angle / count));
+    // The weight ends at twice the reach, which is the chord of this angle.
+    const double angle = 2.0 * std::asin(std::sqrt(double(reach_sq)));
+    const double elevation = std::asin(std::clamp(direction.to_world.y, -1.0, 1.0));
+    const double rows = size.y / std::numbers::pi;
+    const int row_first = std::max(int((elevation - angle) * rows + 0.5 * size.y), 0);
+    const int row_last = std::min(int((elevation + angle) * rows + 0.5 * size.y), size.y - 1);
+    // Widest span of azimuths of a cap that contains no pole.
+    const double sine = std::sin(angle) / std::max(std::cos(elevation), 1e-9);
+    const bool is_around = std::abs(elevation) + angle >= 0.5 * std::numbers::pi || sine >= 1.0;
+    const double columns = size.x / (2.0 * std::numbers::pi);
+    const int reach = is_around ? size.x / 2 : std::min(int(std::asin(sine) * columns) + 1, size.x / 2);
+    const int middle = int(std::atan2(direction.to_world.z, direction.to_world.x) * columns + 0.5 * size.x);
+    for (int y = row_first; y <= row_last; y++) {
+      for (int k = middle - reach; k < middle - reach + std::min(2 * reach + 1, size.x); k++) {
+        const int x = (k + size.x) % size.x;
+        const glm::dvec3 apart =
+            render_scene::direction_of((x + 0.5) / size.x, (y + 0.5) / size.y) - direction.to_world;
+        weights[std::size_t(y * size.x + x)] +=
+            shared::world_mirror_weight(float(glm::dot(apart, apart)) / reach_sq) / float(rest.sample_count);
+      }
+    }
+  }
+  return weights;
+}
+
+void SceneWorld::write_level(gpu::Device &device, int level, std::span<const glm::vec3> radiance,
+                             std::span<const float> weights) const
+{
+  std::vector<glm::vec4> texels;
+  texels.reserve(radiance.size());
+  for (std::size_t i = 0; i < radiance.size(); i++) {
+    texels.emplace_back(key_.is_black ? glm::vec3(0.0F) : radiance[i], weights.empty() ? 1.0F : weights[i]);
+  }
+  device.upload(levels_, level, std::as_bytes(std::span(texels)));
+}
+
+void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings,
+                              const RestDirections &rest)
 {
   const Key key{scene.world_revision(), settings.planned_sample_count(), !settings.light.has(LightPart::Kind::World)};
   if (std::exchange(key_, key) != key || !has(features, Feature::World)) {
@@ -113,6 +168,11 @@ void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature fe
   }
   else if (!levels_) {
     make_levels(scene);
+    rest_ = {};
+  }
+  if (levels_ && std::exchange(rest_, rest) != rest) {
+    // The first level is not filtered.
+    write_level(scene.device(), 0, scene.world()->rest, mirror_weights(rest));
   }
 }
 
@@ -123,7 +183,7 @@ void SceneWorld::write_block(const render_scene::RenderScene &scene)
   for (std::size_t i = 0; i < world.harmonics.size() && !key_.is_black; i++) {
     block.harmonics[i] = glm::vec4(world.harmonics[i], 0.0F);
   }
-  block.is_sampled = key_.sample_count > 1 ? 1 : 0;
+  block.sample_count = key_.sample_count > 1 ? key_.sample_count : 0;
   const double lobe_share = world_lobe_directions / (double(std::max(directions_.count, 1)) * key_.sample_count);
   block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
   if (occlusion_ && key_.sample_count == 1) {
@@ -147,12 +207,7 @@ void SceneWorld::make_levels(const render_scene::RenderScene &scene)
       device.create_sampler({.name = "world_sampler", .filter = gpu::Filter::Linear, .wrap_u = gpu::Wrap::Repeat});
   const auto levels = render_scene::prefiltered(scene.world()->rest, WORLD_LEVEL_COUNT);
   for (std::size_t i = 0; i < levels.size(); i++) {
-    std::vector<glm::vec4> texels;
-    texels.reserve(levels[i].size());
-    for (const glm::vec3 &texel : levels[i]) {
-      texels.emplace_back(key_.is_black ? glm::vec3(0.0F) : texel, 1.0F);
-    }
-    device.upload(levels_, int(i), std::as_bytes(std::span(texels)));
+    write_level(device, int(i), levels[i], {});
   }
 }
 

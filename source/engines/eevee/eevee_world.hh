@@ -29,6 +29,19 @@ struct WorldDirections {
   static constexpr int many = 8;
 };
 
+/** The directions of the rest of a world over all samples of a picture. */
+struct RestDirections {
+  /** Null: there are none. */
+  std::shared_ptr<const render_scene::WorldDistribution> distribution{};
+  /** Number of samples, and of directions of each. */
+  int sample_count = 0;
+  int direction_count = 0;
+  std::uint32_t stream = 0;
+
+  [[nodiscard]] render_scene::WorldDirection at(std::uint32_t i) const;
+  bool operator==(const RestDirections &) const = default;
+};
+
 /** A specular lobe is lit by sampled directions if it contains at least this number of them over all samples. */
 inline constexpr double world_lobe_directions = 12.0;
 
@@ -62,10 +75,11 @@ class SceneWorld {
     return directions_;
   }
   /**
-   * Create the resources of the world's light that \a features need, and free the others.
+   * Create the resources of the world's light that \a features need, and free the others. \a rest: of the samples.
    * \pre with Feature::World, the scene has a world. sync_occlusion was called
    */
-  void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings);
+  void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings,
+                    const RestDirections &rest);
   /** Create the picture of the background if it is shown and changed; free it if it is not shown. */
   void update_picture(const render_scene::RenderScene &scene, const Settings &settings);
   /** After a submission was lost: the next update_light writes the block again. */
@@ -95,6 +109,9 @@ class SceneWorld {
  private:
   void write_block(const render_scene::RenderScene &scene);
   void make_levels(const render_scene::RenderScene &scene);
+  /** \a weights: \see mirror_weights */
+  void write_level(gpu::Device &device, int level, std::span<const glm::vec3> radiance,
+                   std::span<const float> weights) const;
 
   /** Inputs from which `occlusion_` and `directions_` were made; the revisions of casters are 0 if none are traced. */
   struct OcclusionKey {
@@ -129,6 +146,8 @@ class SceneWorld {
   gpu::Buffer block_;
   /** Prefiltered levels for specular reflection. Empty without specular materials. */
   gpu::Texture levels_;
+  /** Those whose weights the first level has. */
+  RestDirections rest_;
   gpu::Sampler sampler_;
   gpu::Texture picture_;
   gpu::Sampler picture_sampler_;

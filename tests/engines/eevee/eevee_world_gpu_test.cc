@@ -208,6 +208,60 @@ TEST_F(WorldGpuTest, LightThroughAWindowConvergesToItsFormFactor)
   EXPECT_LT(many.rmse, 0.2);
 }
 
+TEST_F(WorldGpuTest, AMirrorKeepsAWorldOfOneRadianceFromEverySide)
+{
+  scene.set_world(scene::World{});
+  scene.edit(material, [](scene::Material &value) {
+    value.base_color = glm::vec3(1.0F);
+    value.metallic = 1.0F;
+    value.roughness = 0.1F;
+  });
+  for (const double angle : {0.0, 0.4, 0.8, 1.1, 1.3, 1.4}) {
+    camera = test::camera_at(glm::dvec3(0.1, 0.1, 0) + 16.0 * glm::dvec3(std::sin(angle), 0.0, std::cos(angle)),
+                             {0.1, 0.1, 0}, 0.001F);
+    for (const int sample_count : {16, 64}) {
+      EXPECT_NEAR(middle(sample_count).g, 1.0F, 0.07F) << angle << ' ' << sample_count;
+    }
+  }
+}
+
+/** The mirrored edges of a wall become sharper with the number of samples. */
+TEST_F(WorldGpuTest, AWallInAMirrorConvergesToThatOfTheReference)
+{
+  scene.set_world(scene::World{});
+  scene.edit(material, [](scene::Material &value) {
+    value.base_color = glm::vec3(1.0F);
+    value.metallic = 1.0F;
+    value.roughness = 0.05F;
+  });
+  test::add_object(scene, test::add_box_mesh(scene, material),
+                   glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(-3, 0, 1)), glm::dvec3(0.2, 1.2, 1.0)));
+  constexpr int size = 24;
+  camera = test::camera_at({4, 0, 4}, {-1, 0, 0}, 0.7F);
+  std::vector<glm::ivec2> pixels;
+  for (int y = 0; y < size; y++) {
+    for (int x = 0; x < size; x++) {
+      pixels.emplace_back(x, y);
+    }
+  }
+  const reference::Tracer tracer(scene);
+  const auto expected = reference::direct_light(tracer, camera, {size, size}, pixels, {.sample_count = 64});
+  const auto error_of = [&](int sample_count) {
+    test::Renderer renderer(*device, scene, {size, size},
+                            {.shadow = {.map_size_px = 512}, .sample_count = sample_count});
+    const test::Picture picture = renderer.picture(camera);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < pixels.size(); i++) {
+      const double error = double(picture.pixels[i].g) - double(glm::vec3(expected[i]).g);
+      sum += error * error;
+    }
+    return std::sqrt(sum / double(pixels.size()));
+  };
+  EXPECT_LT(error_of(16), 0.3);
+  EXPECT_LT(error_of(64), 0.2);
+  EXPECT_LT(error_of(256), 0.15);
+}
+
 /** A mirrored sun that is wider than the lobe of the metal is a disk of about the sun's radiance, or is hidden. */
 TEST_F(WorldGpuTest, ASunInASmoothMetalIsThatOfTheReference)
 {
