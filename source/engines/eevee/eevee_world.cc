@@ -106,6 +106,10 @@ static std::vector<float> mirror_weights(const RestDirections &rest)
   const glm::ivec2 size = render_scene::WorldLight::size;
   std::vector<float> weights(std::size_t(size.x) * std::size_t(size.y), rest.distribution ? 0.0F : 1.0F);
   const int count = rest.distribution ? rest.sample_count * rest.direction_count : 0;
+  std::vector<glm::dvec3> texel_directions;
+  for (int i = 0; count > 0 && i < size.x * size.y; i++) {
+    texel_directions.push_back(render_scene::direction_of((i % size.x + 0.5) / size.x, (i / size.x + 0.5) / size.y));
+  }
   for (int i = 0; i < count; i++) {
     const render_scene::WorldDirection direction = rest.at(std::uint32_t(i));
     const float reach_sq = shared::world_mirror_reach_sq(float(direction.solid_angle / count));
@@ -123,10 +127,9 @@ static std::vector<float> mirror_weights(const RestDirections &rest)
     const int middle = int(std::atan2(direction.to_world.z, direction.to_world.x) * columns + 0.5 * size.x);
     for (int y = row_first; y <= row_last; y++) {
       for (int k = middle - reach; k < middle - reach + std::min(2 * reach + 1, size.x); k++) {
-        const int x = (k + size.x) % size.x;
-        const glm::dvec3 apart =
-            render_scene::direction_of((x + 0.5) / size.x, (y + 0.5) / size.y) - direction.to_world;
-        weights[std::size_t(y * size.x + x)] +=
+        const auto texel = std::size_t(y * size.x + (k + size.x) % size.x);
+        const glm::dvec3 apart = texel_directions[texel] - direction.to_world;
+        weights[texel] +=
             shared::world_mirror_weight(float(glm::dot(apart, apart)) / reach_sq) / float(rest.sample_count);
       }
     }
