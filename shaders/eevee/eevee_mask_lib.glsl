@@ -17,11 +17,16 @@ float mask_threshold()
 }
 
 /**
- * Offset from the middle of the pixel, within a sample's share of it. A mask whose pattern is aligned with the pixels has the same phase
- * at all of their middles, so that its share there is wrong.
+ * Offset from the middle of the pixel, within a sample's share of it. \a across, \a up: texels from the middle of the pixel to those of the
+ * next ones. Where they are multiples of a twelfth of a texel, the middles of all pixels have a few phases of the mask's pattern, so that
+ * its share there is wrong. Elsewhere there is no offset, as it doubles the error at edges.
  */
-vec2 mask_offset_px()
+vec2 mask_offset_px(vec2 across, vec2 up)
 {
+  vec4 twelfths = 12.0 * vec4(across, up);
+  if (any(greaterThan(abs(twelfths - round(twelfths)), vec4(0.05)))) {
+    return vec2(0.0);
+  }
   // Two lattices that are unlike that of mask_threshold.
   uvec2 pixel = uvec2(gl_FragCoord.xy);
   vec2 place = vec2(to_unit(2654435769u * pixel.x + 1779033703u * pixel.y), to_unit(1395630315u * pixel.x + 3518319155u * pixel.y));
@@ -31,9 +36,9 @@ vec2 mask_offset_px()
 /**
  * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is the same all around it, the pixel is covered as often as
  * the texels in it: levels above 0 of a mask's texture store the covered share. Elsewhere, such as at the edge of a shape that is larger
- * than the pixel, it is covered as one place in it is, with the right mean. A mask is the same all around if its shares over 1 pixel, over
- * 4 and over the distance between samples are alike, or if those over 4, 8 and 16 pixels are equal: a weight that varied with the mask's
- * own pattern within a pixel would change the mean.
+ * than the pixel, it is covered as its middle is, which has half of the error and the right mean (\see mask_offset_px). A mask is the same
+ * all around if its shares over 1 pixel, over 4 and over the distance between samples are alike, or if those over 4, 8 and 16 pixels are
+ * equal: a weight that varied with the mask's own pattern within a pixel would change the mean.
  */
 bool is_pixel_cut_out(float mask_cutoff)
 {
@@ -47,15 +52,17 @@ bool is_pixel_cut_out(float mask_cutoff)
     return factor < mask_cutoff;
   }
 #endif
-  vec2 across = dFdx(surface_uv);
-  vec2 up = dFdy(surface_uv);
+  vec2 texels = vec2(textureSize(base_color_texture, 0));
+  vec2 across = dFdx(surface_uv) * texels;
+  vec2 up = dFdy(surface_uv) * texels;
   // x: the level that the sampler reads, which is 0 without mip levels. y: the level by size.
   vec2 lod = textureQueryLod(base_color_texture, surface_uv);
   float level = lod.y + view.texture_lod_bias;
   bool is_small = lod.x > 0.0 && level > 0.75;
   // From about two texels in a pixel on: the edge of a larger texel is sharp.
-  vec2 offset_px = is_small ? mask_offset_px() * clamp(12.0 * (level - 0.87), 0.0, 1.0) : vec2(0.0);
-  bool is_open = factor * textureLod(base_color_texture, surface_uv + offset_px.x * across + offset_px.y * up, 0.0).a < mask_cutoff;
+  vec2 offset_px = is_small ? mask_offset_px(across, up) * clamp(12.0 * (level - 0.87), 0.0, 1.0) : vec2(0.0);
+  vec2 place_uv = surface_uv + (offset_px.x * across + offset_px.y * up) / texels;
+  bool is_open = factor * textureLod(base_color_texture, place_uv, 0.0).a < mask_cutoff;
   if (!is_small || factor < mask_cutoff) {
     return is_open;
   }
