@@ -457,6 +457,8 @@ Status render_scene(RenderOptions options, gpu::Device &device, ImportedScene &i
   if (!options.has_picture()) {
     print_message("gnomon: the null backend draws nothing: no picture is written\n");
   }
+  // The import's warnings have named them.
+  result.report.limits.insert(result.report.limits.begin(), scene.limits.begin(), scene.limits.end());
   result.counters = device.counters();
   result.memory_bytes = device.memory_bytes();
   result.total_seconds = seconds_since(start);

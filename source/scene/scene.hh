@@ -95,6 +95,8 @@ class Scene {
   bool is_lamp_default = false;
   /** Import warnings. Each names the element and the reason. */
   std::vector<std::string> warnings{};
+  /** Those of the warnings that name a limit of the import: the picture lacks something that the file has. */
+  std::vector<std::string> limits{};
   /** Played by pose(). */
   std::vector<Animation> animations{};
   std::vector<Skin> skins{};

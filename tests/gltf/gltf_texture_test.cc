@@ -126,6 +126,7 @@ TEST(GltfUv, SetsAreKeptByImportanceAndNotByNumber)
   EXPECT_NO_WARNING(lit, "baseColorTexture");
   EXPECT_NO_WARNING(lit, "normalTexture");
   EXPECT_WARNING(lit, "its occlusionTexture is drawn as no occlusion: texCoord: 1 is a third set");
+  EXPECT_EQ(lit.limits.size(), 1U);
   // A texture without an effect gives way.
   material["extensions"]["KHR_materials_unlit"] = json::object();
   EXPECT_NO_WARNING(import(builder), "baseColorTexture");

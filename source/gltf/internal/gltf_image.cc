@@ -43,11 +43,12 @@ ImageDecoder::ImageDecoder(std::span<const unsigned char> bytes, std::string wha
   const glm::uvec2 full(file_->width(), file_->height());
   const glm::uvec2 kept = size_max > 0 ? scene::reduced_size(full, size_max) : full;
   if (kept.x > edge_max || kept.y > edge_max) {
-    throw Fault(what_, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max) +
-                           " unless a limit of the texture size reduces it");
+    throw LimitFault(what_, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max) +
+                                " unless a limit of the texture size reduces it");
   }
   if (texel_count() > image_texel_count_max) {
-    throw Fault(what_, "is too large, " + size + " texels: an image may have " + std::to_string(image_texel_count_max));
+    throw LimitFault(what_,
+                     "is too large, " + size + " texels: an image may have " + std::to_string(image_texel_count_max));
   }
   kept_texel_count_ = std::uint64_t(kept.x) * kept.y;
 }

@@ -301,9 +301,9 @@ class MaterialReader {
     try {
       const auto set = std::find(uv_sets_.begin(), uv_sets_.end(), slot.set);
       if (set == uv_sets_.end()) {
-        throw Fault("texCoord", std::to_string(slot.set) +
-                                    " is a third set of texture coordinates, and two of more "
-                                    "important textures are kept");
+        throw LimitFault("texCoord", std::to_string(slot.set) +
+                                         " is a third set of texture coordinates, and two of more "
+                                         "important textures are kept");
       }
       result.uv_set = static_cast<int>(set - uv_sets_.begin());
       const bool is_glossiness = source_.glossiness && name.target == &Material::metallic_roughness_texture;
@@ -314,7 +314,7 @@ class MaterialReader {
     }
     catch (const Fault &fault) {
       result.texture = stand_ins_.texture_of(name);
-      warnings_.add(what_, reason_of(name, fault));
+      stand_ins_.warn(what_, name, fault, warnings_);
     }
     result.offset = {limited("offset", slot.offset[0]), limited("offset", slot.offset[1])};
     result.rotation = limited("rotation", slot.rotation);
@@ -439,7 +439,7 @@ void MaterialImporter::finish(Progress &progress)
         if (name.target == &Material::metallic_roughness_texture && factor != factor_roughness_.end()) {
           changed.roughness = factor->second;
         }
-        warnings_.add("material '" + printable(material.name) + '\'', reason_of(name, found->second));
+        stand_ins_.warn("material '" + printable(material.name) + '\'', name, found->second, warnings_);
       }
     }
     scene_.replace(handle, std::move(changed));

@@ -15,6 +15,17 @@ namespace gnomon::gltf {
 /** An element of the file cannot be used: "what: reason". The importer's entry point adds the file's name. */
 struct Fault : std::runtime_error {
   Fault(std::string_view what, std::string_view reason);
+
+  /** It would be used if a limit of the import were higher. */
+  bool is_limit = false;
+};
+
+/** An element is beyond a limit of the import. */
+struct LimitFault : Fault {
+  LimitFault(std::string_view what, std::string_view reason) : Fault(what, reason)
+  {
+    is_limit = true;
+  }
 };
 
 /** A name from a file for a one-line message: shortened, and without control characters. */

@@ -120,12 +120,6 @@ inline constexpr std::array<SlotName, 15> slot_names = {{
   return std::string((*place)[1]) + std::string(slot.name);
 }
 
-/** Text of the warning about a slot with a stand-in. */
-[[nodiscard]] inline std::string reason_of(const SlotName &slot, const Fault &fault)
-{
-  return "its " + std::string(slot.name) + " is drawn as " + std::string(slot.stand_in_name) + ": " + fault.what();
-}
-
 /** Textures that replace missing or damaged ones, one for each slot that needs it. */
 class StandIns {
  public:
@@ -149,6 +143,17 @@ class StandIns {
       texture = scene_.add(value);
     }
     return texture;
+  }
+
+  /** Warns that \a slot of \a material has a stand-in, and notes the limit that is the reason. */
+  void warn(const std::string &material, const SlotName &slot, const Fault &fault, Warnings &warnings)
+  {
+    const std::string reason =
+        "its " + std::string(slot.name) + " is drawn as " + std::string(slot.stand_in_name) + ": " + fault.what();
+    warnings.add(material, reason);
+    if (fault.is_limit) {
+      scene_.limits.push_back(material + ": " + reason);
+    }
   }
 
  private:

@@ -102,8 +102,9 @@ void TextureImporter::spend(const ImageDecoder &decoder)
 {
   const auto check = [&](std::uint64_t count, std::uint64_t spent, std::uint64_t max, const char *limit) {
     if (count > max - spent) {
-      throw Fault(decoder.what(), "is too large, " + decoder.size_text() + " texels: " + std::to_string(max - spent) +
-                                      " are left of those that all images may have" + limit);
+      throw LimitFault(decoder.what(), "is too large, " + decoder.size_text() +
+                                           " texels: " + std::to_string(max - spent) +
+                                           " are left of those that all images may have" + limit);
     }
   };
   check(decoder.kept_texel_count(), texel_count_, texel_count_max_, ", by --image-memory");
