@@ -75,7 +75,7 @@ struct ShapeShading {
   ShadingFrame frame;
 #ifdef USE_SPECULAR
   vec4 ltc_matrix;
-  /** Of the specular lobe, with Fresnel terms. */
+  /** Albedo of the specular lobe, with Fresnel terms. */
   vec3 albedo;
 #endif
 };

@@ -92,7 +92,7 @@ float mirror_seen = 1.0;
 #endif
 
 #ifdef USE_SPECULAR
-/** a of the first layer: sum of world_mirror_weight over the sampled directions of the picture / number of samples. */
+/** Alpha of the first layer: the sum of world_mirror_weight over the sampled directions of the picture, divided by the number of samples. */
 layout(binding = WORLD_LEVELS_SLOT) uniform sampler2DArray world_levels;
 
 /** Mean radiance of the world over a lobe of \a alpha around the unit vector \a direction. */

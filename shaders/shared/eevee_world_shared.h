@@ -18,7 +18,7 @@ SHARED_BEGIN
 /** Number of points over all samples in the narrowest lobe that they draw. Narrower lobes are widened to it. */
 #define WORLD_SUN_LOBE_POINTS 4.0f
 
-/** About the number of directions, over all samples, in the area over which a mirrored direction takes their visibility. */
+/** Approximate number of directions, over all samples, whose visibility a mirrored direction takes. */
 #define WORLD_MIRROR_DIRECTIONS 6.0f
 
 /** Most probes of the visible parts of the world. */
@@ -39,7 +39,7 @@ SHARED_ASSERT_SIZE(WorldSunPoint, 32)
 struct WorldBlock {
   /** rgb: coefficients of irradiance / π as a polynomial of the normal. \see world_irradiance */
   vec4 harmonics[9];
-  /** Of a picture in which lights of the kind LIGHT_WORLD sample the world; the harmonics are not read then. Otherwise 0. */
+  /** Samples of a picture in which lights of the kind LIGHT_WORLD sample the world and the harmonics are not read; otherwise 0. */
   int sample_count;
   /** Minimum alpha of a lobe that contains enough sampled directions. Narrower lobes read `world_levels`. */
   float alpha_sampled;
