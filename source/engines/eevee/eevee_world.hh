@@ -75,8 +75,8 @@ class SceneWorld {
     return directions_;
   }
   /**
-   * Create the resources of the world's light that \a features need, and free the others. \a rest: the directions of the samples.
-   * \pre with Feature::World, the scene has a world. sync_occlusion was called
+   * Create the resources of the world's light that \a features need, and free the others. \a rest: the directions of
+   * the samples. \pre with Feature::World, the scene has a world. sync_occlusion was called
    */
   void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings,
                     const RestDirections &rest);
