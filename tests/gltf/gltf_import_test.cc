@@ -570,6 +570,13 @@ TEST(GltfMaterial, FactorsAreRead)
   EXPECT_NO_WARNING(scene, "paint");
 }
 
+TEST(GltfMaterial, ACutoffAboveOneCutsOutOpaqueMaterialsToo)
+{
+  const auto [material, scene] = import_material({{"alphaMode", "MASK"}, {"alphaCutoff", 1.5}});
+  EXPECT_GT(material.alpha_cutoff, material.alpha);
+  EXPECT_NO_WARNING(scene, "paint");
+}
+
 TEST(GltfMaterial, RefractionScalesTheReflection)
 {
   // An index of 1.5 reflects 0.04, and 2 reflects 1/9.
