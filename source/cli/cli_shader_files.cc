@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace gnomon::cli {
 
@@ -16,11 +17,16 @@ struct Ending {
   std::size_t size;
 };
 
+/** The ways in which a file's name ends in its stage. */
+std::array<std::string, 3> endings_of(std::string_view stage)
+{
+  return {fmt::format(".{}", stage), fmt::format(".{}.glsl", stage), fmt::format("_{}.glsl", stage)};
+}
+
 std::optional<Ending> ending_of(std::string_view path)
 {
   for (const shader_check::StageName &stage : shader_check::stage_names()) {
-    for (const std::string &ending : {fmt::format(".{}", stage.ending), fmt::format(".{}.glsl", stage.ending),
-                                      fmt::format("_{}.glsl", stage.ending)}) {
+    for (const std::string &ending : endings_of(stage.ending)) {
       if (path.ends_with(ending)) {
         return Ending{stage.stage, ending.size()};
       }
@@ -35,19 +41,6 @@ std::optional<shader_check::Stage> stage_of(const fs::path &path)
 {
   const std::optional<Ending> ending = ending_of(path.string());
   return ending ? std::optional(ending->stage) : std::nullopt;
-}
-
-std::string with_stage(const fs::path &path, shader_check::Stage stage)
-{
-  std::string text = path.string();
-  const std::optional<Ending> ending = ending_of(text);
-  if (!ending) {
-    return {};
-  }
-  // A dot or an underscore precedes the name of the stage.
-  const std::string_view name = shader_check::stage_names()[std::size_t(ending->stage)].ending;
-  const std::string_view wanted = shader_check::stage_names()[std::size_t(stage)].ending;
-  return text.replace(text.size() - ending->size + 1, name.size(), wanted);
 }
 
 bool is_surface_function(const fs::path &path)
@@ -88,23 +81,50 @@ void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage 
   found->files.push_back({stage, file});
 }
 
-void add_stages_between(shader_check::Program &program)
+/** Adds the files beside those of \a program whose stages are between its first and its last. */
+static void add_stages_between(shader_check::Program &program)
 {
-  using shader_check::Stage;
-  const auto path_of = [&](Stage stage) {
-    const auto file = std::ranges::find(program.files, stage, &shader_check::Program::File::stage);
-    return file == program.files.end() ? std::string() : file->path;
-  };
-  const std::string vertex = path_of(Stage::Vertex);
-  if (vertex.empty() || path_of(Stage::Fragment).empty()) {
-    return;
-  }
-  for (const Stage stage : {Stage::TessControl, Stage::TessEvaluation, Stage::Geometry}) {
-    const std::string path = path_of(stage).empty() ? with_stage(vertex, stage) : std::string();
-    if (!path.empty() && fs::is_regular_file(path)) {
-      program.files.push_back({stage, path});
+  const std::vector<shader_check::Program::File> given = program.files;
+  const auto [first, last] = std::ranges::minmax(given, {}, &shader_check::Program::File::stage);
+  for (const shader_check::StageName &stage : shader_check::stage_names()) {
+    if (stage.stage <= first.stage || stage.stage >= last.stage || std::ranges::any_of(given, [&](const auto &file) {
+          return file.stage == stage.stage || !are_linked(file.stage, stage.stage);
+        })) {
+      continue;
+    }
+    const auto endings = endings_of(stage.ending);
+    const auto ending =
+        std::ranges::find_if(endings, [&](const std::string &end) { return fs::is_regular_file(program.name + end); });
+    if (ending != endings.end()) {
+      program.files.push_back({stage.stage, program.name + *ending});
     }
   }
+}
+
+/** Whether a stage between the two must follow \a before in every pipeline. */
+static bool is_gap(shader_check::Stage before, shader_check::Stage after)
+{
+  using shader_check::Stage;
+  return (before == Stage::TessControl && after > Stage::TessEvaluation) ||
+         (before == Stage::Task && after > Stage::Mesh);
+}
+
+void complete(std::vector<shader_check::Program> &programs)
+{
+  std::vector<shader_check::Program> whole;
+  for (shader_check::Program &program : programs) {
+    add_stages_between(program);
+    std::ranges::stable_sort(program.files, {}, &shader_check::Program::File::stage);
+    whole.push_back({program.name, {}, program.defines});
+    for (shader_check::Program::File &file : program.files) {
+      std::vector<shader_check::Program::File> &files = whole.back().files;
+      if (!files.empty() && is_gap(files.back().stage, file.stage)) {
+        whole.push_back({program.name, {}, program.defines});
+      }
+      whole.back().files.push_back(std::move(file));
+    }
+  }
+  programs = std::move(whole);
 }
 
 std::string unknown_stage(const std::string &file)
@@ -122,20 +142,41 @@ std::string unknown_stage(const std::string &file)
       endings);
 }
 
+bool is_macro_name(std::string_view name)
+{
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  return !name.empty() && is_letter(name.front()) &&
+         std::ranges::all_of(name, [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
+}
+
 std::string shader_define(const std::string &argument)
 {
   const std::size_t equals = argument.find('=');
   const std::string name = argument.substr(0, equals);
-  return name.empty() ? "" : name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
+  const std::size_t parameters = name.find('(');
+  if (!is_macro_name(name.substr(0, parameters)) || (parameters != std::string::npos && !name.ends_with(')')) ||
+      argument.find_first_of("\r\n") != std::string::npos) {
+    return "";
+  }
+  return name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
 }
 
-std::string define_of(const std::string &argument)
+void add_define(std::vector<std::string> &defines, const std::string &define)
 {
-  std::string define = shader_define(argument);
-  if (define.empty()) {
-    throw UsageError(fmt::format("-D '{}' is not NAME or NAME=VALUE", argument));
+  const auto name_of = [](std::string_view text) { return text.substr(0, text.find_first_of(" (")); };
+  std::erase_if(defines, [&](const std::string &earlier) { return name_of(earlier) == name_of(define); });
+  defines.push_back(define);
+}
+
+void add_defines(std::vector<std::string> &defines, const std::vector<std::string> &arguments)
+{
+  for (const std::string &argument : arguments) {
+    const std::string define = shader_define(argument);
+    if (define.empty()) {
+      throw UsageError(fmt::format("-D '{}' is not NAME or NAME=VALUE", argument));
+    }
+    add_define(defines, define);
   }
-  return define;
 }
 
 void add_source_options(CLI::App &command, std::vector<std::string> &include_folders, std::vector<std::string> &defines)

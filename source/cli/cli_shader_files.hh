@@ -15,9 +15,6 @@ namespace gnomon::cli {
 /** Whether the name is that of a surface function: `x.surface.glsl` or `x_surface.glsl`. */
 [[nodiscard]] bool is_surface_function(const std::filesystem::path &path);
 
-/** \a path with the ending of \a stage in the place of its own, in the same spelling; empty if it has none. */
-[[nodiscard]] std::string with_stage(const std::filesystem::path &path, shader_check::Stage stage);
-
 /** The path without the part that stage_of() reads. All stages of a program have the same stem. */
 [[nodiscard]] std::string stem_of(const std::filesystem::path &path);
 
@@ -25,19 +22,25 @@ namespace gnomon::cli {
 void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage stage, const std::string &file);
 
 /**
- * Adds the stages between the vertex and the fragment stage of \a program that lie beside them: without those the
- * interfaces of the given ones do not meet.
+ * Adds to each program the files beside its own whose stages are between its first and its last: without those the
+ * interfaces of the given ones do not meet. Where a stage that every pipeline needs is missing, the program becomes
+ * two.
  */
-void add_stages_between(shader_check::Program &program);
+void complete(std::vector<shader_check::Program> &programs);
 
 /** Why \a file has no stage: endings that stage_of() knows. */
 [[nodiscard]] std::string unknown_stage(const std::string &file);
 
-/** Converts `NAME=VALUE` or `NAME` to a define; empty if there is no name. */
+[[nodiscard]] bool is_macro_name(std::string_view name);
+
+/** Converts `NAME=VALUE` or `NAME` to a define; empty if NAME is no name of a macro. */
 [[nodiscard]] std::string shader_define(const std::string &argument);
 
-/** A define for every stage from NAME or NAME=VALUE of -D. \throws UsageError */
-[[nodiscard]] std::string define_of(const std::string &argument);
+/** Adds a result of shader_define(). It replaces an earlier define of the same name, as compilers do with -D. */
+void add_define(std::vector<std::string> &defines, const std::string &define);
+
+/** The same for the values of -D. \throws UsageError */
+void add_defines(std::vector<std::string> &defines, const std::vector<std::string> &arguments);
 
 /** Adds -I and -D. */
 void add_source_options(CLI::App &command, std::vector<std::string> &include_folders,

@@ -37,9 +37,9 @@ std::vector<NamedInterface> file_interfaces(const InterfaceArguments &arguments)
   }
   shader_check::FolderFiles folder{fs::path()};
   std::vector<NamedInterface> interfaces;
+  complete(programs);
   for (shader_check::Program &program : programs) {
-    add_stages_between(program);
-    std::ranges::transform(arguments.defines, std::back_inserter(program.defines), define_of);
+    add_defines(program.defines, arguments.defines);
     interfaces.push_back(
         {program.name, program.defines, shader_check::program_interface(program, folder.files(), options)});
   }

@@ -123,6 +123,19 @@ std::vector<std::string> targets_in(const ManifestValue &value)
   return targets;
 }
 
+std::vector<std::string> features_in(const ManifestValue &value)
+{
+  std::vector<std::string> features;
+  const auto known = shader_check::device_features();
+  for (const ManifestValue &feature : value.list()) {
+    features.push_back(feature.text());
+    if (std::ranges::find(known, features.back()) == known.end()) {
+      feature.fail(fmt::format("'{}' is no feature; there are {}", features.back(), fmt::join(known, ", ")));
+    }
+  }
+  return features;
+}
+
 std::vector<std::string> defines_in(const ManifestValue &value)
 {
   std::vector<std::string> defines;
@@ -140,6 +153,9 @@ std::vector<std::vector<std::string>> permutations_in(const ManifestValue &value
 {
   std::vector<std::vector<std::string>> all{{}};
   for (const auto &[name, values] : value.members()) {
+    if (!is_macro_name(name)) {
+      values.fail(fmt::format("'{}' is no name of a macro", name));
+    }
     std::vector<std::vector<std::string>> longer;
     const std::vector<ManifestValue> choices = values.list();
     if (choices.empty()) {
@@ -194,7 +210,7 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
     manifest.include_folders.push_back((folder / include).lexically_normal().string());
   }
   manifest.levels = root.at("levels").texts();
-  manifest.features = root.at("features").texts();
+  manifest.features = features_in(root.at("features"));
   const std::vector<std::string> targets = targets_in(root.at("targets"));
   const std::vector<std::string> defines = defines_in(root.at("defines"));
   const ManifestValue programs = root.at("programs");
@@ -212,7 +228,9 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
       ShaderManifest::Entry &entry = manifest.entries.emplace_back(
           ShaderManifest::Entry{program, own_targets.is_given() ? targets_in(own_targets) : targets});
       for (const auto &list : {defines, own_defines, permutation}) {
-        entry.program.defines.insert(entry.program.defines.end(), list.begin(), list.end());
+        for (const std::string &define : list) {
+          add_define(entry.program.defines, define);
+        }
       }
     }
     value.require_known_keys();

@@ -311,6 +311,25 @@ void write_output(const std::vector<ShaderManifest::Entry> &entries,
   }
 }
 
+/** Adds an error for each of \a checks without mistakes of which there is no SPIR-V to write. */
+void add_missing_output(const std::vector<ShaderManifest::Entry> &entries,
+                        const std::vector<shader_check::ProgramCheck> &checks, const CheckArguments &arguments,
+                        ShaderReport &report)
+{
+  for (std::size_t i = 0; i < checks.size(); i++) {
+    const shader_check::CheckTarget target = checks[i].target;
+    if (!checks[i].has_errors() && !has_spirv(target)) {
+      const shader_check::Program &program = entries[i].program;
+      report.messages.push_back(
+          {shader_check::Severity::Error, program.files.front().path, 1,
+           fmt::format("there is no SPIR-V for {}, so that -o {} is not written; --target vulkan, "
+                       "vulkan1.0 to vulkan1.3 and opengl-spirv make it",
+                       to_string(target), arguments.output),
+           "spirv", program.name, "", target});
+    }
+  }
+}
+
 /**
  * The programs of FILES: files whose names differ only in the stage belong to one. \a others gets the messages about
  * files that are no stages.
@@ -338,8 +357,8 @@ ShaderManifest programs_of_files(const CheckArguments &arguments, ShaderReport &
     }
   }
   ShaderManifest project;
+  complete(programs);
   for (shader_check::Program &program : programs) {
-    add_stages_between(program);
     project.entries.push_back({std::move(program), {}});
   }
   return project;
@@ -414,7 +433,7 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
       arguments.manifest.empty() ? programs_of_files(arguments, others) : read_shader_manifest(arguments.manifest);
   is_any_checked = !project.entries.empty() || others.program_count > 0;
   for (ShaderManifest::Entry &entry : project.entries) {
-    std::ranges::transform(arguments.defines, std::back_inserter(entry.program.defines), define_of);
+    add_defines(entry.program.defines, arguments.defines);
   }
   require_outputs(project.entries, arguments);
   shader_check::FolderFiles folder{fs::path()};
@@ -435,6 +454,9 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   const std::vector<ShaderJob> jobs = jobs_of(project, files, options, arguments);
   std::vector<shader_check::ProgramCheck> checks;
   ShaderReport report = report_of(jobs, files, arguments, &checks);
+  if (!arguments.output.empty()) {
+    add_missing_output(project.entries, checks, arguments, report);
+  }
   if (!arguments.output.empty() && !report.has_errors()) {
     write_output(project.entries, checks, arguments);
   }

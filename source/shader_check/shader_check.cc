@@ -172,6 +172,12 @@ class Checker {
     const bool is_compiled = c_.add(std::move(source), options_.target);
     StageSource &added = *c_.sources.back();
     check_byte_order_mark(added);
+    check_version(added);
+    if (check_bytes(added)) {
+      // glslang's messages would only follow from it.
+      is_compiled_ = false;
+      return;
+    }
     for (const CompileMessage &message : compile_messages(c_.glslang.log(), added)) {
       add(message.severity, message.rule, stage, message.position, message.text);
     }
@@ -265,10 +271,57 @@ class Checker {
     }
   }
 
+  /** Reports files that are no text of GLSL. \return whether there is one */
+  bool check_bytes(const StageSource &source)
+  {
+    bool is_any = false;
+    for (const StageSource::File &file : source.texts()) {
+      const std::size_t zero = file.text.find('\0');
+      if (zero == std::string_view::npos) {
+        continue;
+      }
+      is_any = true;
+      // Every second byte of ASCII is 0 in UTF-16.
+      const bool is_utf16 =
+          file.text.starts_with("\xFF\xFE") || file.text.starts_with("\xFE\xFF") ||
+          (zero <= 1 && file.text.size() > zero + 2 && file.text[zero + 1] != '\0' && file.text[zero + 2] == '\0');
+      const std::string_view before = file.text.substr(0, zero);
+      add(Severity::Error, "compile", source.files()[file.index], 1 + int(std::ranges::count(before, '\n')),
+          is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
+                   : "the file has a NUL byte (0x00) here, which GLSL does not allow");
+    }
+    return is_any;
+  }
+
+  /** glslang takes any version for any target without SPIR-V. */
+  void check_version(const StageSource &source)
+  {
+    const std::optional<Version> version = version_in(source.text());
+    if (options_.target == CheckTarget::Es && version && !version->is_es()) {
+      add(Severity::Error, "compile", source.files().front(), version->line,
+          fmt::format("version {} is not of GLSL ES, and the target is OpenGL ES", version->number));
+    }
+  }
+
+  /**
+   * Whether only a link would need what \a message misses: a program of OpenGL may have several shaders of one stage,
+   * of which one has the `main` and the layouts of the stage, and others have functions that it calls.
+   */
+  static bool is_about_other_shaders(const LinkMessage &message)
+  {
+    return message.severity == Severity::Warning ||
+           std::ranges::any_of(std::array{"Missing entry point", "No function definition", "At least one shader must"},
+                               [&](const char *part) { return message.text.find(part) != std::string::npos; });
+  }
+
   void link_stages()
   {
     bool is_linked = c_.glslang.link();
     const std::string log(c_.glslang.log());
+    if (!is_linked && c_.sources.size() == 1 && options_.target == CheckTarget::OpenGl &&
+        std::ranges::all_of(link_messages(log), is_about_other_shaders)) {
+      return;
+    }
     c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
     check_findings();
     check_slots();
@@ -324,13 +377,17 @@ class Checker {
   void add_block_differences(const std::vector<LinkMessage> &errors)
   {
     for (const LinkMessage &message : errors) {
-      // Stages often have parts of their own in the push constants.
-      const bool is_push_constant = std::ranges::any_of(c_.facts, [&](const StageFacts &facts) {
-        return std::ranges::any_of(facts.uniform_blocks, [&](const Declaration &block) {
-          return block.is_push_constant && find_word(message.text, block.name) != std::string_view::npos;
+      const auto names_one = [&](const std::vector<Declaration> &declarations) {
+        return std::ranges::any_of(declarations, [&](const Declaration &declaration) {
+          // Stages often have parts of their own in the push constants.
+          return !declaration.is_push_constant && find_word(message.text, declaration.name) != std::string_view::npos;
         });
+      };
+      // Inputs and outputs have rules of their own, and built-in blocks may differ.
+      const bool is_binding = std::ranges::any_of(c_.facts, [&](const StageFacts &facts) {
+        return names_one(facts.uniform_blocks) || names_one(facts.storage_blocks) || names_one(facts.textures);
       });
-      if (message.severity == Severity::Error && !is_push_constant) {
+      if (message.severity == Severity::Error && is_binding) {
         const auto [stage, position] = place_of(message.text);
         add(Severity::Warning, "block-match", stage, position, message.text);
       }
@@ -449,11 +506,14 @@ class Checker {
            !(has_components && (output.component >= input.component + input.component_count ||
                                 input.component >= output.component + output.component_count));
   }
-  /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3. */
+  /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
   bool is_part(const Declaration &output, const Declaration &input) const
   {
-    return options_.target == CheckTarget::Vulkan13 && output.type.array_sizes.empty() &&
-           input.type.array_sizes.empty() && input.type.row_count == 0 && output.type.scalar == input.type.scalar &&
+    const bool is_allowed = options_.target == CheckTarget::Vulkan13 ||
+                            (is_vulkan(options_.target) &&
+                             std::ranges::find(settings_.features, "maintenance4") != settings_.features.end());
+    return is_allowed && output.type.array_sizes.empty() && input.type.array_sizes.empty() &&
+           input.type.row_count == 0 && output.type.scalar == input.type.scalar &&
            input.type.vector_size < output.type.vector_size;
   }
 
@@ -702,14 +762,28 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
   with_large_stack([&] {
     std::vector<Program::File> sorted = program.files;
     std::ranges::stable_sort(sorted, {}, &Program::File::stage);
+    // By the choice of the target, which reads includes under any condition.
+    std::set<std::string> read;
+    std::set<std::string> missed;
     CheckSettings settings{{}, false, options.features};
     settings.options.levels = options.levels;
     settings.options.is_strict = options.is_strict;
     if (options.target) {
       result.target = *options.target;
     }
+    else if (std::ranges::any_of(sorted, [&](const Program::File &file) {
+               return files(file.path).value_or("").find('\0') != std::string_view::npos;
+             })) {
+      // That is no text, which says nothing.
+      result.target = CheckTarget::Vulkan12;
+    }
     else {
-      TargetChoice choice = choose_target(sorted, files, options.include_folders);
+      const gpu::ShaderFiles noted = [&](std::string_view path) {
+        const std::optional<std::string_view> text = files(path);
+        (text ? read : missed).emplace(path);
+        return text;
+      };
+      TargetChoice choice = choose_target(sorted, noted, options.include_folders);
       result.target = choice.target;
       result.target_reason = std::move(choice.reason);
     }
@@ -722,7 +796,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
       }
       else {
         checker.refuse(file.path, 1, "there is no such file, or it cannot be read");
-        result.absent.push_back(file.path);
+        missed.insert(file.path);
       }
     }
     checker.finish();
@@ -742,6 +816,12 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
       for (const std::string &path : source->absent()) {
         add_new(result.absent, path);
       }
+    }
+    for (const std::string &path : read) {
+      add_new(result.files, path);
+    }
+    for (const std::string &path : missed) {
+      add_new(result.absent, path);
     }
   });
   return result;

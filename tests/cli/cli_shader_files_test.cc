@@ -58,6 +58,52 @@ TEST_F(ShaderFilesTest, StagesBetweenThatLieBesideBelongToTheProgram)
   }
 }
 
+TEST_F(ShaderFilesTest, AnySubsetOfAProgramsStagesIsRight)
+{
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"q.vert", "layout(location = 0) out vec3 a;\nvoid main() { a = vec3(1); gl_Position = vec4(a, 1); }\n"},
+      {"q_tesc.glsl",
+       "layout(vertices = 3) out;\nlayout(location = 0) in vec3 a[];\nlayout(location = 1) out vec3 b[];\n"
+       "void main() { b[gl_InvocationID] = a[gl_InvocationID]; }\n"},
+      {"q.tese",
+       "layout(triangles) in;\nlayout(location = 1) in vec3 b[];\nlayout(location = 2) out vec3 d;\n"
+       "void main() { d = b[0]; gl_Position = vec4(d, 1); }\n"},
+      {"q.geom.glsl",
+       "layout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\nlayout(location = 2) in vec3 d[];\n"
+       "layout(location = 3) out vec3 e;\nvoid main() { e = d[0]; EmitVertex(); }\n"},
+      {"q.frag",
+       "layout(location = 3) in vec3 e;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(e, 1); }\n"}};
+  for (const auto &[path, text] : files) {
+    write(path, "#version 450\n" + text);
+  }
+  for (unsigned int subset = 1; subset < 1U << files.size(); subset++) {
+    std::string paths;
+    for (std::size_t i = 0; i < files.size(); i++) {
+      paths += (subset & 1U << i) != 0 ? files[i].first + " " : "";
+    }
+    const Finished finished = check(paths + "--target vulkan");
+    EXPECT_EQ(finished.status, 0) << paths << finished.out;
+    EXPECT_NE(finished.out.find(": 0 errors, 0 warnings"), std::string::npos) << paths << finished.out;
+  }
+  std::filesystem::remove(folder / "q.tese");
+  EXPECT_EQ(check("q_tesc.glsl q.frag --target vulkan").status, 0) << "they are not linked across a gap";
+}
+
+TEST_F(ShaderFilesTest, TheLastDefinitionOfAMacroIsTheOneThatCounts)
+{
+  write("n.frag", fragment_head + "#if N != 2\noops\n#endif\nvoid main() { c = vec4(N); }\n");
+  EXPECT_EQ(check("n.frag -D N=2").status, 0);
+  const Finished twice = check("n.frag -D N=1 -D N=2");
+  EXPECT_EQ(twice.status, 0) << twice.out;
+  EXPECT_EQ(check("n.frag -D N=2 -D N=1").status, 1);
+  write(
+      "m.json",
+      R"({"defines": ["N=1"], "programs": [{"files": ["n.frag"], "defines": ["N=3"], "permutations": {"N": [4, 5]}}]})");
+  EXPECT_EQ(check("--manifest m.json -D N=2").status, 0);
+  const Finished wrong = check("n.frag -D N=2 -D 'A(x,x)=1'");
+  EXPECT_EQ(wrong.out.find("n.frag:1: error: '#define A(x,x) 1': "), 0U) << wrong.out;
+}
+
 TEST_F(ShaderFilesTest, OutputIsJsonOrSarifWhateverTheCompilerPrints)
 {
   // glslang prints about old versions to stdout. Names and texts may be no UTF-8.
@@ -112,6 +158,13 @@ TEST_F(ShaderFilesTest, SpirvIsWritten)
   EXPECT_EQ(check("a.frag -o a.frag").status, 2) << "an input is not overwritten";
   EXPECT_EQ(read("a.frag"), "broken");
   EXPECT_EQ(check("a.vert -o x.spv --target all").status, 2);
+  write("old.frag", "void main() { gl_FragColor = vec4(1); }\n");
+  for (const std::string target : {"auto", "opengl", "es"}) {
+    const Finished finished = check("old.frag -o old.spv --target " + target);
+    EXPECT_EQ(finished.status, 1) << target;
+    EXPECT_EQ(finished.out.find("old.frag:1: error: there is no SPIR-V for OpenGL "), 0U) << finished.out;
+    EXPECT_FALSE(std::filesystem::exists(folder / "old.spv"));
+  }
 }
 
 TEST_F(ShaderFilesTest, DepfileNamesWhatWasRead)
@@ -166,6 +219,12 @@ TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
   EXPECT_NE(result("").find("lib/b.glsl:"), std::string::npos) << "the include has changed";
   write_file("lib/b.glsl", "float b = 1.0;\n");
   EXPECT_EQ(result(""), first);
+  write_file("lib/b.glsl", "float b = 1.0;\n#if 0\n#include \"d.glsl\"\n#endif\n");
+  write("lib/d.glsl", "#extension GL_ARB_gl_spirv : enable\n");
+  EXPECT_NE(result("").find("OpenGL 4.5"), std::string::npos) << result("");
+  write("lib/d.glsl", "");
+  EXPECT_EQ(result(""), first) << "an include that only chose the target has changed";
+  write_file("lib/b.glsl", "float b = 1.0;\n");
   write("b.glsl", "oops\n");
   EXPECT_NE(result("").find("b.glsl:"), std::string::npos) << "a file now stands where none was";
   std::filesystem::remove(folder / "b.glsl");
@@ -273,6 +332,15 @@ TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
   wrong = right;
   wrong["programs"][0]["targets"] = {"vulkan9"};
   rejected(wrong, "/programs/0/targets/0: 'vulkan9' is no target");
+  wrong = right;
+  wrong["features"] = {"nope"};
+  rejected(wrong, "/features/0: 'nope' is no feature");
+  wrong = right;
+  wrong["programs"][0]["permutations"] = {{"1X", {1}}};
+  rejected(wrong, "/programs/0/permutations/1X: '1X' is no name of a macro");
+  wrong = right;
+  wrong["programs"][0]["defines"] = {"1X=1"};
+  rejected(wrong, "/programs/0/defines/0: NAME or NAME=VALUE is needed");
   wrong["programs"][0] = {{"files", {"lit.vert", "other.vert"}}};
   rejected(wrong, "/programs/0/files/1: the program has two files of the vertex stage");
   std::vector<int> many(300);

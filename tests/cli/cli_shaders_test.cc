@@ -640,7 +640,8 @@ TEST_F(ShadersTest, WrongUsageHasStatusTwoAndMissingFilesStatusOne)
 {
   for (const std::string arguments :
        {"shaders", "shaders paint", "shaders check --format xml", "shaders check --target metal", "shaders check -D A",
-        "shaders check a.frag --shaders tree", "shaders check a.frag -D =1", "shaders reflect"}) {
+        "shaders check a.frag --shaders tree", "shaders check a.frag -D =1", "shaders check a.frag -D 1X=2",
+        "shaders check a.frag -D 'A(x=1'", "shaders reflect"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
     EXPECT_FALSE(finished.err.empty()) << arguments;

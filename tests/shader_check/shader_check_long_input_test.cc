@@ -80,7 +80,12 @@ TEST(LongInput, AStageAboveTheLimitIsOneMessage)
   const std::string text = shader(repeated("// " + std::string(100, 'a') + "\n", count / 30), "x");
   EXPECT_EQ(message_count(text), 1U);
   const std::string error = reflection_error(text);
-  EXPECT_NE(error.find("at most 1048576"), std::string::npos) << error;
+  EXPECT_NE(error.find("more than 1048576 bytes"), std::string::npos) << error;
+  const gpu::ShaderFiles files = [&](std::string_view) { return std::optional<std::string_view>(text); };
+  const ProgramCheck check = check_program({"x", {{Stage::Fragment, "x.frag"}}, {}}, files, {});
+  ASSERT_EQ(check.messages.size(), 1U);
+  EXPECT_EQ(check.messages[0].rule, "limit");
+  EXPECT_EQ(check.target_reason.find("no version"), std::string::npos) << check.target_reason;
 }
 
 TEST(LongInput, MessagesOfReflectionAreBounded)

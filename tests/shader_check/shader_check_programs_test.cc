@@ -237,6 +237,174 @@ TEST(CheckProgram, EveryVersionOfOpenGlAndEsIsCompiledAndRecognised)
   }
 }
 
+/** A fragment shader that includes by \a lines and returns \a value. */
+std::string including(const std::string &lines, const std::string &value)
+{
+  return "#version 450\n#extension GL_GOOGLE_include_directive : require\n" + lines +
+         "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(" + value + "); }\n";
+}
+
+TEST(CheckProgram, TheTargetFollowsFromSigns)
+{
+  const std::string out = "layout(location = 0) out vec4 c;\n";
+  const std::string main = "void main() { c = vec4(1.0); }\n";
+  std::vector<std::pair<std::string, CheckTarget>> fragments = {
+      {"#version 330\n#ifdef VULKAN\nlayout(push_constant) uniform P { float k; };\n#else\nuniform float k;\n#endif\n"
+       "out vec4 c;\nvoid main() { c = vec4(k); }\n",
+       CheckTarget::OpenGl},
+      {"#version 450\n#ifdef GL_SPIRV\n#extension GL_ARB_gl_spirv : enable\n#endif\nuniform float k;\nout vec4 c;\n"
+       "void main() { c = vec4(k); }\n",
+       CheckTarget::OpenGl},
+      {"#version 450\n#ifdef FOG\nvoid f() {\n#else\nvoid g() {\n#endif\n}\nuniform float k;\n" + out + main,
+       CheckTarget::OpenGl},
+      {"varying lowp vec2 uv; uniform lowp sampler2D t; void main() { gl_FragColor = texture2D(t, uv); }\n",
+       CheckTarget::Es},
+      {"#ifdef GL_ES\nprecision mediump float;\n#endif\nvarying vec2 uv;\nvoid main() { gl_FragColor = vec4(uv, 0, 1); "
+       "}\n",
+       CheckTarget::Es},
+      {"#ifdef GL_ES\nprecision mediump float;\n#endif\nvoid main() { gl_FragColor = gl_Color; }\n",
+       CheckTarget::OpenGl},
+      {"#version 450\n#ifdef VULKAN\nlayout(push_constant) uniform P { float k; };\n#else\nconst float k = "
+       "1.0;\n#endif\n" +
+           out + "void main() { c = vec4(k); }\n",
+       CheckTarget::Vulkan12}};
+  for (const auto &[text, target] : fragments) {
+    const ProgramCheck check = check_texts({{"x.frag", text}});
+    EXPECT_EQ(check.target, target) << text << check.target_reason;
+    EXPECT_EQ(messages_of(check), "") << text;
+  }
+  for (const std::string version : {"310 es", "320 es", "450"}) {
+    for (const std::string sign : {"layout(constant_id = 3) const int N = 4;\n", "layout(local_size_x_id = 0) in;\n",
+                                   "layout(local_size_y_id = 1) in;\n", "layout(local_size_z_id = 2) in;\n"}) {
+      const ProgramCheck check = check_texts(
+          {{"x.comp", "#version " + version + "\nlayout(local_size_x = 1) in;\n" + sign + "void main() {}\n"}});
+      EXPECT_TRUE(is_vulkan(check.target)) << version << sign << check.target_reason;
+    }
+  }
+  const std::string guarded =
+      "#ifndef A_H\n#define A_H\nlayout(push_constant) uniform P { float k; };\n#endif // A_H\n";
+  const ProgramCheck check =
+      check_texts({{"a.glsl", guarded},
+                   {"x.frag", "#version 450\n#include \"a.glsl\"\nout vec4 c;\nvoid main() { c = vec4(k); }\n"}});
+  EXPECT_TRUE(is_vulkan(check.target)) << "an include guard is no condition: " << check.target_reason;
+}
+
+TEST(CheckProgram, TheResultNamesTheFilesThatChoseTheTarget)
+{
+  const Texts texts = {{"x.frag",
+                        "#version 450\n#if 0\n#include \"a.glsl\"\n#include \"none.glsl\"\n#endif\n"
+                        "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(1); }\n"},
+                       {"a.glsl", "float a;\n"}};
+  const ProgramCheck check = check_texts(texts);
+  EXPECT_EQ(check.files, (std::vector<std::string>{"x.frag", "a.glsl"}));
+  EXPECT_EQ(check.absent, (std::vector<std::string>{"none.glsl"}));
+  EXPECT_EQ(check_texts(texts, for_target(CheckTarget::Vulkan12)).files, (std::vector<std::string>{"x.frag"}));
+}
+
+TEST(CheckProgram, AVersionOfDesktopIsNoneOfEs)
+{
+  for (const Dialect &dialect : dialects()) {
+    const ProgramCheck check = check_texts({{"x.frag", dialect.version + "precision mediump float;\nvoid main() {}\n"}},
+                                           for_target(CheckTarget::Es));
+    const bool is_es = dialect.target == CheckTarget::Es || dialect.version.empty();
+    EXPECT_EQ(messages_of(check).find("x.frag:1: error: version ") == 0, !is_es)
+        << dialect.version << messages_of(check);
+  }
+}
+
+TEST(CheckProgram, AFileThatIsNoTextIsNamed)
+{
+  const std::string text = "#version 450\nvoid main() {}\n";
+  for (const std::string mark : {"\xFF\xFE", ""}) {
+    std::string wide = mark;
+    for (const char c : text) {
+      wide += c;
+      wide += '\0';
+    }
+    const ProgramCheck check = check_texts({{"x.frag", wide}});
+    EXPECT_EQ(messages_of(check).find("x.frag:1: error: the file is text in UTF-16"), 0U) << messages_of(check);
+    EXPECT_EQ(check.messages.size(), 1U) << messages_of(check);
+  }
+  EXPECT_EQ(
+      messages_of(check_texts({{"x.frag", std::string("\n\0x;\n", 5)}})).find("x.frag:2: error: the file has a NUL"),
+      0U);
+  const ProgramCheck check = check_texts({{"x.frag", text + std::string("\0;\n", 3)}});
+  EXPECT_EQ(check.target_reason, "");
+  EXPECT_EQ(messages_of(check),
+            "x.frag:3: error: the file has a NUL byte (0x00) here, which GLSL does not allow [compile]\n");
+}
+
+TEST(CheckProgram, OneOfSeveralShadersOfAStageMayBeCheckedAlone)
+{
+  const std::string body = "vec4 shade(vec2 uv)";
+  const std::string library = "#version 330\nuniform sampler2D t;\n" + body + " { return texture(t, uv); }\n";
+  const std::string user = "#version 330\n" + body + ";\nin vec2 uv;\nout vec4 c;\nvoid main() { c = shade(uv); }\n";
+  const std::string geometry = "#version 330\nvoid f() { EmitVertex(); }\n";
+  for (const auto &[path, text] :
+       {std::pair("x.frag", library), std::pair("x.frag", user), std::pair("x.geom", geometry)}) {
+    EXPECT_EQ(messages_of(check_texts({{path, text}}, for_target(CheckTarget::OpenGl))), "") << text;
+  }
+  EXPECT_NE(messages_of(check_texts({{"x.frag", "#version 330\nfloat f(float x) { return f(x); }\nvoid main() {}\n"}},
+                                    for_target(CheckTarget::OpenGl)))
+                .find("[recursion]"),
+            std::string::npos);
+  const std::string vertex = "#version 330\nout vec2 uv;\nvoid main() { gl_Position = vec4(0); uv = vec2(0); }\n";
+  EXPECT_NE(messages_of(check_texts({{"x.vert", vertex}, {"x.frag", user}}, for_target(CheckTarget::OpenGl)))
+                .find("No function definition"),
+            std::string::npos)
+      << "a program must be whole";
+}
+
+TEST(CheckProgram, AVectorMayBeReadInPart)
+{
+  const Texts texts = {
+      {"x.vert", "#version 450\nlayout(location = 0) out vec4 v;\nvoid main() { v = vec4(1); gl_Position = v; }\n"},
+      {"x.frag",
+       "#version 450\nlayout(location = 0) in vec3 v;\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(v, 1); "
+       "}\n"}};
+  EXPECT_EQ(messages_of(check_texts(texts, for_target(CheckTarget::Vulkan13))), "");
+  ProgramOptions options = for_target(CheckTarget::Vulkan12);
+  EXPECT_NE(messages_of(check_texts(texts, options)).find("[varying-type]"), std::string::npos);
+  options.features = {"maintenance4"};
+  EXPECT_EQ(messages_of(check_texts(texts, options)), "");
+}
+
+TEST(CheckProgram, BuiltInBlocksMayDiffer)
+{
+  const Texts texts = {{"x.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n"},
+                       {"x.geom",
+                        "#version 450\nlayout(triangles) in;\nlayout(triangle_strip, max_vertices = 3) out;\n"
+                        "in gl_PerVertex { vec4 gl_Position; } gl_in[];\n"
+                        "void main() { gl_Position = gl_in[0].gl_Position; EmitVertex(); }\n"}};
+  EXPECT_EQ(messages_of(check_texts(texts, for_target(CheckTarget::Vulkan12))), "");
+}
+
+TEST(CheckProgram, WhatAnIncludeGuardSkipsIsNotCounted)
+{
+  const std::string filler = "// " + std::string(stage_bytes_max / 8, 'a') + "\n";
+  const auto check = [&](const std::string &header, const std::string &between) {
+    std::string includes;
+    for (int i = 0; i < 12; i++) {
+      includes += "#include \"a.glsl\"\n" + between;
+    }
+    return messages_of(
+        check_texts({{"x.frag", including(includes, "1.0")}, {"a.glsl", header}}, for_target(CheckTarget::Vulkan12)));
+  };
+  const std::string guarded = "#ifndef A\n#define A\n" + filler + "#endif\n";
+  EXPECT_EQ(check(guarded, ""), "");
+  EXPECT_EQ(
+      check("/* a header\n*/\n # ifndef A // once\n#define A 1\n#if 1\n" + filler + "#else\n#endif\n#endif /* A */\n",
+            ""),
+      "");
+  for (const auto &[header, between] :
+       {std::pair(filler, ""), std::pair(guarded + "#define B\n", ""), std::pair("#define B\n" + guarded, ""),
+        std::pair("#ifndef A\n#define B\n" + filler + "#endif\n", ""),
+        std::pair("#ifndef A\n#define A\n#else\n" + filler + "#endif\n", ""), std::pair(guarded, "#undef A\n"),
+        std::pair(guarded, "#un\\\ndef A\n")}) {
+    EXPECT_NE(check(header, between).find("[limit]"), std::string::npos) << check(header, between);
+  }
+}
+
 TEST(CheckProgram, LineDirectivesMoveLinesAndFiles)
 {
   for (const Dialect &dialect : dialects()) {
@@ -257,6 +425,11 @@ TEST(CheckProgram, LineDirectivesMoveLinesAndFiles)
           << dialect.version << messages_of(check);
     }
   }
+  const ProgramCheck numbered = check_texts(
+      {{"x.frag", "#version 450\n#include \"s/h.glsl\"\nlayout(location = 0) out vec4 c;\nvoid main() {}\n"},
+       {"s/h.glsl", "#line 10 3\nfloat f() { return oops; }\n"}},
+      for_target(CheckTarget::Vulkan12));
+  EXPECT_EQ(messages_of(numbered).find("s/h.glsl:10: error: 'oops'"), 0U) << messages_of(numbered);
   for (const std::string name : {"gen/material.glsl", "a b.nut", "C:/x.hlsl", "12"}) {
     const std::string text =
         "#version 450\n#extension GL_GOOGLE_cpp_style_line_directive : require\n"
@@ -277,13 +450,6 @@ TEST(CheckProgram, NamesThatAreKeywordsElsewhereStayInMessages)
     EXPECT_EQ(messages_of(check).find(fmt::format("x.frag:3: error: '{}' : undeclared identifier", name)), 0U)
         << messages_of(check);
   }
-}
-
-/** A fragment shader that includes by \a lines and returns \a value. */
-std::string including(const std::string &lines, const std::string &value)
-{
-  return "#version 450\n#extension GL_GOOGLE_include_directive : require\n" + lines +
-         "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(" + value + "); }\n";
 }
 
 TEST(CheckProgram, IncludesAreThoseOfTheCompiler)

@@ -9,6 +9,7 @@
 #include <deque>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 namespace gnomon::shader_check {
 
@@ -18,9 +19,10 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-constexpr std::array<std::string_view, 10> vulkan_words = {
+constexpr std::array<std::string_view, 14> vulkan_words = {
     "push_constant",   "input_attachment_index", "gl_VertexIndex",           "gl_InstanceIndex", "buffer_reference",
-    "shaderRecordEXT", "shaderRecordNV",         "accelerationStructureEXT", "rayQueryEXT",      "spirv_instruction"};
+    "shaderRecordEXT", "shaderRecordNV",         "accelerationStructureEXT", "rayQueryEXT",      "spirv_instruction",
+    "constant_id",     "local_size_x_id",        "local_size_y_id",          "local_size_z_id"};
 /** Beginnings of names of extensions that only Vulkan has. */
 constexpr std::array<std::string_view, 14> vulkan_extensions = {"GL_KHR_vulkan_glsl",
                                                                 "GL_EXT_ray_",
@@ -36,11 +38,21 @@ constexpr std::array<std::string_view, 14> vulkan_extensions = {"GL_KHR_vulkan_g
                                                                 "GL_EXT_shader_8bit_storage",
                                                                 "GL_EXT_samplerless_texture_functions",
                                                                 "GL_EXT_spirv_intrinsics"};
-constexpr std::array<std::string_view, 16> opengl_words = {
-    "gl_VertexID",      "gl_InstanceID", "gl_FragColor", "gl_FragData",        "gl_Vertex",
-    "gl_Normal",        "gl_Color",      "gl_TexCoord",  "gl_ModelViewMatrix", "gl_ProjectionMatrix",
-    "gl_NormalMatrix",  "ftransform",    "atomic_uint",  "subroutine",         "gl_ModelViewProjectionMatrix",
-    "gl_MultiTexCoord0"};
+constexpr std::array<std::string_view, 6> opengl_words = {"gl_VertexID", "gl_InstanceID", "gl_FragColor",
+                                                          "gl_FragData", "atomic_uint",   "subroutine"};
+/** Words of OpenGL that OpenGL ES never had. */
+constexpr std::array<std::string_view, 11> desktop_words = {"gl_Vertex",
+                                                            "gl_Normal",
+                                                            "gl_Color",
+                                                            "gl_FrontColor",
+                                                            "gl_TexCoord",
+                                                            "gl_NormalMatrix",
+                                                            "ftransform",
+                                                            "gl_ModelViewMatrix",
+                                                            "gl_ProjectionMatrix",
+                                                            "gl_MultiTexCoord0",
+                                                            "gl_ModelViewProjectionMatrix"};
+constexpr std::array<std::string_view, 4> precision_words = {"precision", "highp", "mediump", "lowp"};
 
 bool contains(Words words, std::string_view word)
 {
@@ -61,14 +73,24 @@ bool is_vulkan_type(std::string_view type)
 }
 
 struct Sign {
-  std::string text;
+  /** The first outside of conditions; empty if there is none. */
+  std::string sure;
+  /** The first under a condition; empty if there is none. */
+  std::string conditional;
 
-  void set(const std::string &file, int line, std::string_view what)
+  bool is_set() const
   {
-    if (text.empty()) {
-      text = fmt::format("{}:{} has {}", file, line, what);
-    }
+    return !sure.empty() || !conditional.empty();
   }
+};
+
+/** An `#if` whose `#endif` is not read yet. */
+struct Condition {
+  /** Whether it or one around it is no include guard. */
+  bool is_conditional;
+  /** Of braces and parentheses at its begin, where each of its branches begins. */
+  int depth;
+  int parentheses;
 };
 
 /** A statement outside of functions. */
@@ -77,6 +99,8 @@ struct Statement {
   /** Words within the parentheses of `layout(…)`. */
   std::set<std::string_view> layout;
   int line = 1;
+  /** Whether a part of it is under a condition. */
+  bool is_conditional = false;
 };
 
 /** Reads files and notes signs of a target. */
@@ -88,40 +112,60 @@ class Reader {
   {
     is_version_known_ = false;
     if (stage.stage >= Stage::RayGeneration) {
-      vulkan_.set(stage.path, 1, fmt::format("the {} stage", to_string(stage.stage)));
+      set(vulkan_, stage.path, 1, fmt::format("the {} stage", to_string(stage.stage)));
     }
     read_file(stage.path);
     if (!is_version_known_) {
-      // A file without a version is GLSL 1.10 or GLSL ES 1.00.
-      (precision_.text.empty() ? opengl_ : es_)
-          .set(stage.path, 1, precision_.text.empty() ? "no version" : "no version, and a default precision");
+      set(no_version_, stage.path, 1, "no version");
     }
   }
 
   TargetChoice choice() const
   {
-    if (!spirv_.text.empty()) {
-      return {CheckTarget::OpenGlSpirv, spirv_.text};
-    }
-    if (!vulkan_.text.empty() && is_vulkan_possible_) {
-      return {CheckTarget::Vulkan12, vulkan_.text};
-    }
-    if (!es_.text.empty()) {
-      return {CheckTarget::Es, es_.text};
-    }
-    if (!opengl_.text.empty()) {
-      return {CheckTarget::OpenGl, opengl_.text};
+    // A file without a version is GLSL 1.10 or GLSL ES 1.00.
+    const bool is_old_es = no_version_.is_set() && precision_.is_set() && desktop_.sure.empty();
+    const std::string &old = is_old_es && !precision_.sure.empty() ? precision_.sure
+                             : is_old_es                           ? precision_.conditional
+                                                                   : no_version_.sure;
+    const std::string old_es = is_old_es ? fmt::format("{} and no version", old) : std::string();
+    const std::string &opengl = desktop_.sure.empty() ? opengl_.sure : desktop_.sure;
+    const std::string &conditional_opengl = desktop_.conditional.empty() ? opengl_.conditional : desktop_.conditional;
+    for (const auto &[target, reason] :
+         {std::pair(CheckTarget::OpenGlSpirv, &spirv_.sure), std::pair(CheckTarget::Vulkan12, &vulkan_.sure),
+          std::pair(CheckTarget::Es, &es_.sure), std::pair(CheckTarget::Es, &old_es),
+          std::pair(CheckTarget::OpenGl, &opengl), std::pair(CheckTarget::OpenGl, &no_version_.sure),
+          std::pair(CheckTarget::OpenGlSpirv, &spirv_.conditional),
+          std::pair(CheckTarget::Vulkan12, &vulkan_.conditional), std::pair(CheckTarget::Es, &es_.conditional),
+          std::pair(CheckTarget::OpenGl, &conditional_opengl)}) {
+      if (!reason->empty() && (target != CheckTarget::Vulkan12 || is_vulkan_possible_)) {
+        return {target, *reason};
+      }
     }
     return {CheckTarget::Vulkan12, "each declaration has the location or binding that Vulkan needs"};
   }
 
  private:
+  void set(Sign &sign, const std::string &file, int line, std::string_view what) const
+  {
+    std::string &text = is_conditional() ? sign.conditional : sign.sure;
+    if (text.empty()) {
+      text = fmt::format("{}:{} has {}", file, line, what);
+    }
+  }
+  bool is_conditional() const
+  {
+    return is_statement_conditional_ || (!conditions_.empty() && conditions_.back().is_conditional);
+  }
+
   void read_file(const std::string &path)
   {
     const std::optional<std::string_view> text = files_(path);
-    if (!text || !seen_.insert(path).second || text->size() > stage_bytes_max) {
+    if (!text || !seen_.insert(path).second) {
       return;
     }
+    const std::size_t condition_count = conditions_.size();
+    const bool has_guard = !include_guard_of(*text).empty();
+    bool is_first_condition = true;
     int line = 0;
     int depth = 0;
     bool is_in_comment = false;
@@ -130,14 +174,19 @@ class Reader {
     last_word_ = {};
     // The stripped lines live as long as the words of a statement.
     std::deque<std::string> lines;
-    for (std::string_view rest = without_byte_order_mark(*text); !rest.empty();) {
+    for (std::string_view rest = without_byte_order_mark(text->substr(0, stage_bytes_max)); !rest.empty();) {
       const std::string_view whole = rest.substr(0, rest.find('\n'));
       rest.remove_prefix(std::min(whole.size() + 1, rest.size()));
       line++;
       const std::string &code = lines.emplace_back(without_comments(whole, is_in_comment));
       const bool is_directive = is_continued || !gpu::directive_of(code).empty();
       if (is_directive) {
-        if (!is_continued) {
+        if (!is_continued && gpu::directive_of(code).starts_with("if")) {
+          const bool is_guard = std::exchange(is_first_condition, false) && has_guard;
+          conditions_.push_back({is_conditional() || !is_guard, depth, parentheses_});
+        }
+        else if (!is_continued) {
+          read_branch(code, condition_count, depth);
           read_directive(path, line, code);
         }
         const std::size_t last = code.find_last_not_of(" \t\r");
@@ -145,6 +194,23 @@ class Reader {
         continue;
       }
       read_code(path, line, code, depth, statement);
+    }
+    conditions_.resize(std::min(conditions_.size(), condition_count));
+  }
+
+  /** Reads `#else`, `#elif` and `#endif` of a file, which begins with \a condition_count conditions. */
+  void read_branch(std::string_view code, std::size_t condition_count, int &depth)
+  {
+    const std::string_view name = gpu::directive_of(code);
+    if (conditions_.size() <= condition_count) {
+      return;
+    }
+    if (name == "else" || name == "elif") {
+      depth = conditions_.back().depth;
+      parentheses_ = conditions_.back().parentheses;
+    }
+    else if (name == "endif") {
+      conditions_.pop_back();
     }
   }
 
@@ -161,10 +227,10 @@ class Reader {
     else if (name == "extension") {
       const std::string_view extension = scanner.take_word();
       if (extension == "GL_ARB_gl_spirv") {
-        spirv_.set(path, line, extension);
+        set(spirv_, path, line, extension);
       }
       else if (starts_with_one(vulkan_extensions, extension)) {
-        vulkan_.set(path, line, extension);
+        set(vulkan_, path, line, extension);
       }
     }
     else if (name == "include") {
@@ -186,12 +252,12 @@ class Reader {
       return;
     }
     const std::string text = fmt::format("version {}{}{}", *version, profile.empty() ? "" : " ", profile);
-    if (profile == "es" || *version == 100 || *version == 300 || *version == 310 || *version == 320) {
-      es_.set(path, line, text);
+    if (Version{*version, profile, line}.is_es()) {
+      set(es_, path, line, text);
       is_vulkan_possible_ &= *version >= 310;
     }
     else if (*version < 140 || profile == "compatibility") {
-      opengl_.set(path, line, text);
+      set(opengl_, path, line, text);
       is_vulkan_possible_ = false;
     }
   }
@@ -230,7 +296,9 @@ class Reader {
           is_layout_ = is_layout_ && c != ')';
         }
         else if (c == ';' && depth == 0) {
+          is_statement_conditional_ = statement.is_conditional;
           end_statement(path, statement);
+          is_statement_conditional_ = false;
           statement = {};
           parentheses_ = 0;
         }
@@ -248,10 +316,12 @@ class Reader {
       if (statement.words.empty()) {
         statement.line = line;
       }
+      const bool is_in_statement = depth == 0 && parentheses_ <= 0;
+      statement.is_conditional |= (is_layout_ || is_in_statement) && is_conditional();
       if (is_layout_) {
         statement.layout.insert(word);
       }
-      else if (depth == 0 && parentheses_ <= 0) {
+      else if (is_in_statement) {
         statement.words.push_back(word);
       }
     }
@@ -260,13 +330,16 @@ class Reader {
   void note_word(const std::string &path, int line, std::string_view word)
   {
     if (contains(vulkan_words, word)) {
-      vulkan_.set(path, line, word);
+      set(vulkan_, path, line, word);
     }
     else if (contains(opengl_words, word)) {
-      opengl_.set(path, line, word);
+      set(opengl_, path, line, word);
     }
-    else if (word == "precision") {
-      precision_.set(path, line, word);
+    else if (contains(desktop_words, word)) {
+      set(desktop_, path, line, word);
+    }
+    else if (!is_version_known_ && contains(precision_words, word)) {
+      set(precision_, path, line, word);
     }
   }
 
@@ -297,25 +370,24 @@ class Reader {
     }
     const auto has_layout = [&](std::string_view word) { return statement.layout.contains(word); };
     if (has("varying") || has("attribute")) {
-      opengl_.set(path, statement.line, has("varying") ? "varying" : "attribute");
+      set(opengl_, path, statement.line, has("varying") ? "varying" : "attribute");
     }
     else if (has("uniform") || has("buffer")) {
       if (has_layout("set")) {
-        vulkan_.set(path, statement.line, "layout(set = …)");
+        set(vulkan_, path, statement.line, "layout(set = …)");
       }
       else if (has("uniform") && is_vulkan_type(*type)) {
-        vulkan_.set(path, statement.line, *type);
+        set(vulkan_, path, statement.line, *type);
       }
       else if (!has_layout("binding") && !has_layout("push_constant") && !has_layout("buffer_reference") &&
                !has_layout("shaderRecordEXT") && !has_layout("shaderRecordNV")) {
-        opengl_.set(
-            path, statement.line,
+        set(opengl_, path, statement.line,
             fmt::format("{} '{}' without a binding", has("uniform") ? "uniform" : "buffer", statement.words.back()));
       }
     }
     else if (!has_layout("location") && !has_layout("constant_id")) {
-      opengl_.set(path, statement.line,
-                  fmt::format("{} '{}' without a location", has("in") ? "input" : "output", statement.words.back()));
+      set(opengl_, path, statement.line,
+          fmt::format("{} '{}' without a location", has("in") ? "input" : "output", statement.words.back()));
     }
   }
 
@@ -331,7 +403,13 @@ class Reader {
   Sign spirv_;
   Sign es_;
   Sign opengl_;
+  /** Of OpenGL, and not of OpenGL ES. */
+  Sign desktop_;
+  /** Of GLSL ES 1.00, in files without a version. */
   Sign precision_;
+  Sign no_version_;
+  std::vector<Condition> conditions_;
+  bool is_statement_conditional_ = false;
 };
 
 }  // namespace

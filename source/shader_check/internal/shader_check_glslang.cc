@@ -138,8 +138,7 @@ int set_target(glslang::TShader &shader, EShLanguage language, CheckTarget targe
 bool GlslangProgram::add(StageSource &source, CheckTarget target, bool needs_slots)
 {
   if (source.text().size() > stage_bytes_max) {
-    log_ = fmt::format("ERROR: {}:1: the stage takes {} bytes with its includes, and at most {} are checked\n",
-                       source.name().empty() ? "0" : source.name(), source.text().size(), stage_bytes_max);
+    log_ = fmt::format("ERROR: {}:1: {}\n", source.name().empty() ? "0" : source.name(), too_long_text());
     return false;
   }
   const EShLanguage language = glslang_language(source.stage());

@@ -60,27 +60,21 @@ std::optional<std::pair<int, int>> take_line(gpu::TextScanner &scanner)
   return column && scanner.take(": ") ? std::optional(std::pair(*line, *column)) : std::nullopt;
 }
 
-/** The line of `#version`. */
-SourcePosition version_position(const StageSource &source)
-{
-  SourcePosition position;
-  bool is_in_comment = false;
-  std::istringstream lines{source.text()};
-  int number = 1;
-  for (std::string line; std::getline(lines, line); number++) {
-    if (gpu::directive_of(without_comments(line, is_in_comment)) == "version") {
-      position.line = number;
-      break;
-    }
-  }
-  return position;
-}
-
 /** A number of errors, which the messages themselves show. */
 bool is_count(std::string_view text)
 {
   gpu::TextScanner scanner(text);
   return scanner.take_number() && scanner.take(" compilation errors");
+}
+
+/** The line of the preamble that glslang's message names. */
+std::string_view define_at(const StageSource &source, int line)
+{
+  std::string_view rest = source.preamble();
+  for (; line > 1 && rest.find('\n') != std::string_view::npos; line--) {
+    rest.remove_prefix(rest.find('\n') + 1);
+  }
+  return rest.substr(0, rest.find('\n'));
 }
 
 /** `ERROR: NAME:LINE: TEXT` or, about the version, `ERROR: TEXT`. */
@@ -94,22 +88,34 @@ std::optional<CompileMessage> compile_message(std::string_view line, StageSource
   const std::string_view rest = scanner.rest();
   for (std::size_t at = rest.find(':'); at != std::string_view::npos; at = rest.find(':', at + 1)) {
     gpu::TextScanner behind(rest.substr(at));
-    if (const auto place = take_line(behind)) {
+    const auto place = take_line(behind);
+    if (place && rest.substr(0, at) == "-1" && !source.preamble().empty()) {
+      return CompileMessage{
+          *severity,
+          "compile",
+          {},
+          fmt::format("'{}': {}", define_at(source, place->first), without_space_at_end(behind.rest()))};
+    }
+    if (place) {
       return CompileMessage{*severity, "compile", source.position(rest.substr(0, at), place->first, place->second),
                             without_precision(without_space_at_end(behind.rest()))};
     }
   }
-  return CompileMessage{*severity, "compile", version_position(source), std::string(without_space_at_end(rest))};
+  const SourcePosition version{0, version_in(source.text()).value_or(Version()).line, 0};
+  return CompileMessage{*severity, "compile", version, std::string(without_space_at_end(rest))};
 }
 
-/** Makes a message about an include that failed our own. */
-void name_include(CompileMessage &message)
+/** Gives messages that are our own their texts and rules: of an include that failed, or a limit. */
+void name_rule(CompileMessage &message)
 {
   constexpr std::string_view start = "'#include' : ";
   const std::size_t end = message.text.find(" for header name: ");
   if (message.text.starts_with(start) && end != std::string::npos) {
     message.text = message.text.substr(start.size(), end - start.size());
     message.rule = "include";
+  }
+  if (message.text == too_long_text()) {
+    message.rule = "limit";
   }
 }
 
@@ -150,7 +156,7 @@ std::vector<CompileMessage> compile_messages(std::string_view log, StageSource &
   std::istringstream lines{std::string(log)};
   for (std::string line; std::getline(lines, line);) {
     if (std::optional<CompileMessage> message = compile_message(line, source)) {
-      name_include(*message);
+      name_rule(*message);
       messages.push_back(std::move(*message));
     }
     else if (!messages.empty() && !line.empty() && !line.starts_with("ERROR: ")) {

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <filesystem>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace gnomon::shader_check {
@@ -97,6 +98,72 @@ std::string_view without_byte_order_mark(std::string_view text)
   return text.substr(text.starts_with(mark) ? mark.size() : 0);
 }
 
+std::optional<Version> version_in(std::string_view text)
+{
+  bool is_in_comment = false;
+  int number = 1;
+  for (std::string_view rest = text; !rest.empty(); number++) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::string code = without_comments(line, is_in_comment);
+    if (gpu::directive_of(code) != "version") {
+      continue;
+    }
+    gpu::TextScanner scanner(line.substr(line.find("version")));
+    scanner.take_word();
+    const std::optional<int> version = scanner.skip_space().take_number();
+    return version ? std::optional(Version{*version, scanner.skip_space().take_word(), number}) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::string_view include_guard_of(std::string_view text)
+{
+  std::string_view guard;
+  int depth = 0;
+  int directive_count = 0;
+  bool is_in_comment = false;
+  bool is_continued = false;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    const std::string code = without_comments(line, is_in_comment);
+    const std::size_t last = code.find_last_not_of(" \t\r");
+    if (std::exchange(is_continued, last != std::string::npos && code[last] == '\\') || last == std::string::npos) {
+      continue;
+    }
+    const std::string_view directive = gpu::directive_of(code);
+    const bool is_ended = directive_count > 0 && depth == 0;
+    if (is_ended || (directive.empty() && directive_count < 2)) {
+      return {};
+    }
+    if (directive.empty()) {
+      continue;
+    }
+    directive_count++;
+    if (directive_count <= 2) {
+      gpu::TextScanner scanner(line.substr(std::min(line.find(directive), line.size())));
+      scanner.take_word();
+      const std::string_view name = scanner.skip_space().take_word();
+      if (directive != (directive_count == 1 ? "ifndef" : "define") || (directive_count == 2 && name != guard)) {
+        return {};
+      }
+      guard = name;
+    }
+    if (depth == 1 && (directive == "else" || directive == "elif")) {
+      return {};
+    }
+    depth += directive.starts_with("if") ? 1 : directive == "endif" ? -1 : 0;
+  }
+  return depth == 0 && directive_count > 2 ? guard : std::string_view();
+}
+
+std::string too_long_text()
+{
+  return fmt::format("the stage has more than {} bytes with its includes, and at most {} are checked", stage_bytes_max,
+                     stage_bytes_max);
+}
+
 /** Finds the includes of one stage for glslang. */
 class StageSource::Includer : public glslang::TShader::Includer {
  public:
@@ -160,15 +227,47 @@ class StageSource::Includer : public glslang::TShader::Includer {
     }
     const std::size_t file = source_.file_of(path);
     text = source_.unmarked(file, *text);
-    if (std::ranges::find(source_.texts_, file, &File::index) == source_.texts_.end()) {
-      source_.texts_.push_back({file, *text});
-    }
-    bytes_ += text->size();
+    count(file, *text);
     if (bytes_ + source_.text_.size() > stage_bytes_max) {
-      return failed(fmt::format("the stage takes more than {} bytes with its includes", stage_bytes_max));
+      return failed(too_long_text());
+    }
+    if (skipped_bytes_ > skipped_bytes_max) {
+      return failed(fmt::format("include guards skip more than {} bytes", skipped_bytes_max));
     }
     reason_.clear();
     return new IncludeResult(name_of(file), text->data(), text->size(), nullptr);
+  }
+
+  /** Counts the bytes of an include. What a guard skips is counted apart: glslang only looks for its end. */
+  void count(std::size_t file, std::string_view text)
+  {
+    if (guards_.empty()) {
+      guards_.try_emplace(0);
+      note_undefined(source_.text_);
+    }
+    const auto [guard, is_new] = guards_.try_emplace(file);
+    if (is_new) {
+      source_.texts_.push_back({file, text});
+      guard->second = include_guard_of(text);
+      note_undefined(text);
+    }
+    const bool is_skipped = !is_new && !guard->second.empty() && !undefines_any_ && !undefined_.contains(guard->second);
+    (is_skipped ? skipped_bytes_ : bytes_) += text.size();
+  }
+  /** Notes the names of `#undef` in \a text. Words that a line's end splits are not read. */
+  void note_undefined(std::string_view text)
+  {
+    constexpr std::string_view word = "undef";
+    for (std::size_t at = find_word(text, word); at != std::string_view::npos; at = find_word(text, word, at + 1)) {
+      gpu::TextScanner scanner(text.substr(at + word.size()));
+      const std::string_view name = scanner.skip_space().take_word();
+      undefined_.insert(name);
+      undefines_any_ |= name.empty();
+    }
+    for (std::size_t at = text.find('\\'); at != std::string_view::npos; at = text.find('\\', at + 1)) {
+      undefines_any_ |=
+          at > 0 && gpu::is_word_character(text[at - 1]) && text.substr(at + 1).find_first_of("\r\n") == 0;
+    }
   }
 
   IncludeResult *failed(const std::string &reason)
@@ -186,7 +285,14 @@ class StageSource::Includer : public glslang::TShader::Includer {
   const gpu::ShaderFiles &files_;
   std::span<const std::string> folders_;
   std::string reason_;
+  /** Include guards by the indices of files; empty for files without one. */
+  std::unordered_map<std::size_t, std::string_view> guards_;
+  /** Macros that a text undefines: such a guard may skip nothing. */
+  std::set<std::string_view> undefined_;
+  bool undefines_any_ = false;
+  static constexpr std::size_t skipped_bytes_max = 64 * stage_bytes_max;
   std::size_t bytes_ = 0;
+  std::size_t skipped_bytes_ = 0;
 };
 
 StageSource::StageSource(gpu::ShaderSource source)
@@ -243,8 +349,11 @@ SourcePosition StageSource::position(std::string_view name, int line, int column
     position.file = *file < files_.size() ? *file : 0;
   }
   else if (std::from_chars(name.data(), name.data() + name.size(), number).ptr == name.data() + name.size()) {
-    // The number of a string, which no file of the user has.
-    position.file = includer_ == nullptr && number < files_.size() ? number : 0;
+    // The number of a string, or one that a `#line` of the user gave.
+    const auto file = numbers_.find(std::string(name));
+    position.file = includer_ == nullptr     ? (number < files_.size() ? number : 0)
+                    : file != numbers_.end() ? file->second
+                                             : 0;
   }
   else if (!name.empty()) {
     position.file = file_of(name);
@@ -276,15 +385,6 @@ std::optional<LineDirective> line_directive(std::string_view text)
   return directive;
 }
 
-/** The number in a `#version` directive. */
-std::optional<int> version_of(std::string_view text)
-{
-  gpu::TextScanner scanner(text);
-  scanner.skip_space().take("#");
-  scanner.skip_space().take("version");
-  return scanner.skip_space().take_number();
-}
-
 constexpr std::string_view comment_mark = "shader-check: ";
 
 std::optional<RuleLevel> rule_level(std::string_view word)
@@ -314,12 +414,18 @@ void SourceLines::read(CheckTarget target)
       const std::string_view text = rest.substr(0, rest.find('\n'));
       rest.remove_prefix(std::min(text.size() + 1, rest.size()));
       const std::string_view directive = is_in_comment ? std::string_view() : gpu::directive_of(text);
-      if (const std::optional<int> version = directive == "version" ? version_of(text) : std::nullopt) {
-        line_sets_next = *version == 100 || *version >= 300;
+      if (const std::optional<Version> version = directive == "version" ? version_in(text) : std::nullopt) {
+        line_sets_next = version->number == 100 || version->number >= 300;
       }
       if (const std::optional<LineDirective> set = directive == "line" ? line_directive(text) : std::nullopt) {
-        const SourcePosition known = set->file.empty() ? position : source_.position(set->file, 1, 0);
-        position.file = known.file;
+        const bool is_number = set->file.find_first_not_of("0123456789") == std::string_view::npos;
+        if (is_number && source_.has_includer() && !set->file.empty()) {
+          source_.note_number(set->file, file.index);
+          position.file = file.index;
+        }
+        else if (!set->file.empty()) {
+          position.file = source_.position(set->file, 1, 0).file;
+        }
         position.line = set->line + (line_sets_next || set->line == std::numeric_limits<int>::max() ? 0 : 1);
         continue;
       }

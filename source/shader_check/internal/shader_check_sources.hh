@@ -34,6 +34,32 @@ struct SourcePosition {
 /** \a text without the byte-order mark (U+FEFF in UTF-8) at its begin. */
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
+/** What `#version` says. */
+struct Version {
+  int number = 0;
+  /** Empty if there is none. */
+  std::string_view profile;
+  /** Of the directive, from 1. */
+  int line = 1;
+
+  [[nodiscard]] bool is_es() const
+  {
+    return profile == "es" || number == 100 || number == 300 || number == 310 || number == 320;
+  }
+};
+
+/** The first `#version` outside of comments; empty if there is none or it has no number. */
+[[nodiscard]] std::optional<Version> version_in(std::string_view text);
+
+/**
+ * The macro of an include guard: the file has nothing outside of `#ifndef NAME`, `#define NAME` … `#endif`. Empty if it
+ * has none.
+ */
+[[nodiscard]] std::string_view include_guard_of(std::string_view text);
+
+/** The message about a stage that is longer than stage_bytes_max. */
+[[nodiscard]] std::string too_long_text();
+
 /** The text of one stage as glslang gets it, the files that it consists of, and their names in messages. */
 class StageSource {
  public:
@@ -98,6 +124,16 @@ class StageSource {
   [[nodiscard]] SourcePosition position(std::string_view name, int line, int column);
   /** The index in files() of \a path, which is added if it is new. */
   [[nodiscard]] std::size_t file_of(std::string_view path);
+  /** Notes that `#line LINE NUMBER` in \a file gives it a number. The first file of a number keeps it in messages. */
+  void note_number(std::string_view number, std::size_t file)
+  {
+    numbers_.try_emplace(std::string(number), file);
+  }
+  /** Whether a file may be included several times, so that its number is that of no string of glslang's. */
+  [[nodiscard]] bool has_includer() const
+  {
+    return includer_ != nullptr;
+  }
 
  private:
   class Includer;
@@ -111,6 +147,8 @@ class StageSource {
   std::string name_;
   std::vector<std::string> files_;
   std::unordered_map<std::string, std::size_t> indices_;
+  /** Files by the numbers that `#line` gives them. */
+  std::unordered_map<std::string, std::size_t> numbers_;
   std::vector<File> texts_;
   std::vector<std::size_t> marked_;
   std::vector<std::string> absent_;
