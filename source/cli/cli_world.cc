@@ -134,7 +134,8 @@ static scene::World world_of(const WorldOptions &options, std::vector<std::strin
   if (const std::optional<glm::vec3> color = parse_color(options.world)) {
     return {.color = *color};
   }
-  if (std::error_code ignored; !std::filesystem::exists(options.world, ignored)) {
+  const bool is_list = options.world.find(',') != options.world.npos;
+  if (std::error_code ignored; is_list && !std::filesystem::exists(options.world, ignored)) {
     throw std::runtime_error(
         fmt::format("--world '{}': no file has this name, and it is no radiance: three finite numbers R,G,B, 0 or more",
                     options.world));

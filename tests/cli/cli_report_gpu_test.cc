@@ -181,6 +181,7 @@ TEST_F(CliReportTest, WrongUsage)
   finished = report("--world nowhere.hdr");
   EXPECT_EQ(finished.status, 1);
   EXPECT_NE(finished.err.find("nowhere.hdr: "), std::string::npos) << finished.err;
+  EXPECT_NE(report("--world 1,1").err.find("it is no radiance: three finite numbers"), std::string::npos);
   EXPECT_EQ(run("report " + example("spots") + " " + example("spots") + " -o out").status, 1);
 }
 
