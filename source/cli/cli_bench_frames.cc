@@ -36,7 +36,7 @@ void print_budget(const measure::BudgetTimes &times, nlohmann::json &json)
 
 nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
-  scene::Scene scene = import_scene(path);
+  scene::Scene scene = import_scene(path, options.world);
   output::Roles roles;
   add_inputs(roles, scene, options.world);
   roles.add_output(options.json, "--json");

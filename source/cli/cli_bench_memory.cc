@@ -38,7 +38,7 @@ DeviceBytes device_bytes(gpu::Device &device, const scene::Scene &scene, const R
 
 nlohmann::json print_memory(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
-  scene::Scene scene = import_scene(path);
+  scene::Scene scene = import_scene(path, options.world);
   output::Roles roles;
   add_inputs(roles, scene, options.world);
   roles.add_output(options.json, "--json");

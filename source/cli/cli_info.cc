@@ -76,7 +76,7 @@ void add_info(CLI::App &app, Status &status)
   add_world_options(*command, *world);
   add_only_below_option(*command, *only_below);
   command->callback([path, world, only_below, &status] {
-    scene::Scene scene = import_scene(*path, {.only_below = *only_below}, world->own_layer());
+    scene::Scene scene = import_scene(*path, *world, {.only_below = *only_below});
     const bool is_world_default = light_by_world(scene, scene.placed_cameras().front(), *world);
     for (const std::string &warning : scene.warnings) {
       print_message("gnomon: warning: {}\n", warning);

@@ -189,7 +189,7 @@ std::future<ImportedScene> start_import(const RenderOptions &options, const Stop
     const Clock::time_point start = Clock::now();
     gltf::ImportOptions import_options = options.import_options();
     import_options.progress = [&stops](float) { return !stops.is_stopped(); };
-    ImportedScene imported{.scene = import_scene(options.scene, import_options, options.world.own_layer())};
+    ImportedScene imported{.scene = import_scene(options.scene, options.world, import_options)};
     if (options.is_part() || options.has_checkpoint || !options.plan_id.empty()) {
       imported.fingerprint = content_fingerprint(imported.scene, options.world);
     }
@@ -691,7 +691,7 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
 MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
 {
   const Clock::time_point start = Clock::now();
-  scene::Scene scene = import_scene(options.scene, options.import_options(), options.world.own_layer());
+  scene::Scene scene = import_scene(options.scene, options.world, options.import_options());
   MeasuredScene measured{content_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
   // A plan refuses the options that each of its parts would refuse.

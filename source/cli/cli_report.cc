@@ -202,7 +202,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
 
 scene::Scene Run::lit_scene(const std::string &path) const
 {
-  scene::Scene scene = import_scene(path, {.only_below = options_.only_below});
+  scene::Scene scene = import_scene(path, options_.world, {.only_below = options_.only_below});
   light_by_world(scene, scene.placed_cameras().front(), options_.world);
   return scene;
 }

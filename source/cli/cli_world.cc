@@ -94,21 +94,28 @@ void add_only_below_option(CLI::App &command, std::filesystem::path &folder)
       ->check(CLI::ExistingDirectory);
 }
 
+/** Whether the world of \a options is the path of a picture. */
+static bool names_picture(const WorldOptions &options)
+{
+  return !options.world.empty() && options.world != "none" && options.world != "studio" && !parse_color(options.world);
+}
+
 void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOptions &options)
 {
   for (const std::string &file : scene.files) {
     roles.add_input(file, file == scene.path ? "the scene" : "the scene's file");
   }
-  if (!options.world.empty() && options.world != "none" && options.world != "studio" && !parse_color(options.world)) {
+  if (names_picture(options)) {
     roles.add_input(options.world, "--world");
   }
 }
 
-scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options, const std::string &world_layer)
+scene::Scene import_scene(const std::string &path, const WorldOptions &world, const gltf::ImportOptions &options)
 {
   try {
+    const std::string layer = world.world.empty() ? world.layer : "";
     gltf::ImportOptions all = options;
-    all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, world_layer); };
+    all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, layer); };
     return gltf::import_gltf(path, all);
   }
   catch (const gltf::UnknownVariant &unknown) {
@@ -150,9 +157,8 @@ static scene::World world_of(const WorldOptions &options, std::vector<std::strin
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options)
 {
   const bool is_default = options.world.empty();
-  const bool is_file = is_default ? scene.world() && scene.world()->picture
-                                  : options.world != "none" && options.world != "studio" && !parse_color(options.world);
-  if (!options.layer.empty() && !is_file) {
+  const bool has_picture = is_default ? scene.world() && scene.world()->picture : names_picture(options);
+  if (!options.layer.empty() && !has_picture) {
     scene.warnings.push_back(
         fmt::format("--world-layer {}: has no effect, because the world is no picture", options.layer));
   }

@@ -25,12 +25,6 @@ struct WorldOptions {
   /** Factor of the world's radiance. */
   float strength = 1.0F;
   float rotation_degrees = 0.0F;
-
-  /** The layer for the picture of the scene's own world: empty where another world is given. */
-  [[nodiscard]] std::string own_layer() const
-  {
-    return world.empty() ? layer : "";
-  }
 };
 
 void add_world_options(CLI::App &command, WorldOptions &options);
@@ -50,11 +44,11 @@ void add_only_below_option(CLI::App &command, std::filesystem::path &folder);
 void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOptions &options);
 
 /**
- * Imports a scene, with the picture of its own world: ImportOptions::read_picture is replaced. \a world_layer: of that
- * picture, \see read_picture. \throws gltf::ImportError, and UsageError if there is no such variant
+ * Imports a scene, with the picture of its own world: ImportOptions::read_picture is replaced. Without another world,
+ * the layer of \a world is that of this picture. \throws gltf::ImportError, and UsageError if there is no such variant
  */
-[[nodiscard]] scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options = {},
-                                        const std::string &world_layer = {});
+[[nodiscard]] scene::Scene import_scene(const std::string &path, const WorldOptions &world,
+                                        const gltf::ImportOptions &options = {});
 
 /**
  * An equirectangular picture, whose texels may be negative or infinite (scene::clamp_radiances). \a layer: \see

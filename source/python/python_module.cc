@@ -437,7 +437,7 @@ void define_device(py::module_ &module)
           "Content of all textures, buffers and meshes on the device, bytes.");
 }
 
-/** What a renderer tells about its pictures and its properties. */
+/** Classes that describe a renderer's pictures and properties. */
 void define_answers(py::module_ &module)
 {
   py::class_<Report>(module, "Report", "Facts about a renderer's last picture.")

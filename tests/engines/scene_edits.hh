@@ -269,7 +269,7 @@ inline void fill_streams(scene::Mesh &mesh)
   }
 }
 
-/** What the texture slots of a material have before edits. */
+/** Textures in the slots of a material before edits. */
 enum class SlotTextures { None, Texel, Image };
 
 /** Adds a spot whose shadow keeps nothing of pictures before: neither a near plane that follows casters nor an extent.

@@ -88,7 +88,7 @@ struct Sign {
 struct Condition {
   /** Whether it or one around it is no include guard. */
   bool is_conditional;
-  /** Of braces and parentheses at its begin, where each of its branches begins. */
+  /** Depths of braces and of parentheses at its begin; each of its branches begins with them. */
   int depth;
   int parentheses;
 };
@@ -403,9 +403,9 @@ class Reader {
   Sign spirv_;
   Sign es_;
   Sign opengl_;
-  /** Of OpenGL, and not of OpenGL ES. */
+  /** Sign of OpenGL that OpenGL ES does not have. */
   Sign desktop_;
-  /** Of GLSL ES 1.00, in files without a version. */
+  /** Sign of GLSL ES 1.00 in files without a version. */
   Sign precision_;
   Sign no_version_;
   std::vector<Condition> conditions_;

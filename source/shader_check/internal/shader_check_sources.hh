@@ -34,12 +34,12 @@ struct SourcePosition {
 /** \a text without the byte-order mark (U+FEFF in UTF-8) at its begin. */
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
-/** What `#version` says. */
+/** The content of `#version`. */
 struct Version {
   int number = 0;
   /** Empty if there is none. */
   std::string_view profile;
-  /** Of the directive, from 1. */
+  /** Line of the directive, from 1. */
   int line = 1;
 
   [[nodiscard]] bool is_es() const
