@@ -18,7 +18,7 @@ endfunction()
 # which parses their other headers and instantiates their templates once. Names in anonymous namespaces must be unique in the target.
 function(gnomon_reuse_pch TARGET PCH_TARGET)
   if(GNOMON_PCH)
-    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
     # Other builds warn of these in a file alone.
     target_compile_options(${TARGET} PRIVATE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     # For targets that do not link the library, too.
