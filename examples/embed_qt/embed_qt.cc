@@ -28,7 +28,7 @@ class SceneWidget final : public QOpenGLWidget {
   }
   ~SceneWidget() override
   {
-    // What is on the device is destroyed in its context.
+    // The context must be current while resources of the device are destroyed.
     makeCurrent();
     renderer_.reset();
     device_.reset();

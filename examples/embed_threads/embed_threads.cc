@@ -16,7 +16,7 @@
 
 using namespace gnomon;
 
-/** What the threads pass to each other. Only one of them uses it at a time. */
+/** A frame that one thread prepares and the other submits. Only one of them uses it at a time. */
 struct Frame {
   gpu::Packet packet;
   /** The picture is complete with this frame, or `failure` is set. */

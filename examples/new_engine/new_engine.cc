@@ -58,7 +58,8 @@ class FacingEngine final : public draw::Engine {
     return "facing";
   }
 
-  /** Create what does not depend on objects. All of it is destroyed with the viewport, or by remove_engine. */
+  /** Create the resources that do not depend on objects. All of it is destroyed with the viewport, or by remove_engine.
+   */
   void init(draw::Viewport &viewport) override
   {
     Data &data = viewport.engine_data<Data>(*this);
@@ -96,7 +97,7 @@ class FacingEngine final : public draw::Engine {
   {
     Data &data = viewport.engine_data<Data>(*this);
     gpu::CommandList list;
-    // Also after a failure, which may have lost what was made before.
+    // Also after a failure, which may have lost resources that were made before.
     if (viewport.samples_drawn() == 0) {
       init(viewport);
       record(data);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: ways of light through surfaces that transmit it, and on to what is behind them in the picture.
+// For fragment shaders: ways of light through surfaces that transmit it, and on to the picture behind them.
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_bodies_shared.h"
@@ -126,7 +126,7 @@ BodyHit trace_bodies(Ray ray)
   return result;
 }
 
-/** Where a ray meets what is in the picture. */
+/** Where a ray meets a surface of the picture. */
 struct PictureHit {
   bool is_met;
   /** In [0, 1]. Without a hit, the last place on the ray that the picture shows, or a negative value if it shows the end. */
@@ -154,7 +154,7 @@ vec2 texco_at(PictureRay ray, float part)
   return 0.5 * (ray.start.xy + part * ray.way.xy) + 0.5;
 }
 
-/** Depth of what is seen at a part of the way. */
+/** Depth of the picture at a part of the way. */
 float seen_at(PictureRay ray, float part)
 {
   ivec2 size = textureSize(behind_depth, 0);

@@ -11,7 +11,7 @@ layout(location = 7) in vec4 surface_occlusion_emissive_uvs;
 layout(location = 8) in vec4 surface_specular_uvs;
 #ifdef USE_TRANSMISSION
 /**
- * Factor of the roughness, whether its texture is used, and the index of refraction. Mip levels of what is behind are computed
+ * Factor of the roughness, whether its texture is used, and the index of refraction. Mip levels of the picture behind are computed
  * from them and not from storage blocks: llvmpipe takes the level of several invocations from one of them, which may be outside
  * of the triangle and reads zeros there.
  */

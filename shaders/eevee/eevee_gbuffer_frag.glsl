@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Writes what deferred lighting reads of a surface. \see eevee_deferred_lit_frag.glsl
+// Writes the properties of a surface that deferred lighting reads. \see eevee_deferred_lit_frag.glsl
 #include "eevee/eevee_gbuffer_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 #ifdef USE_CLIP_PLANES

@@ -91,7 +91,7 @@ vec3 lamp_highlight(HighlightLamp lamp, MaterialData material, Surface surface, 
     scale *= lamp.light.kind == LIGHT_SUN ? 0.5 + 0.5 * inversesqrt(1.0 + tangent * tangent) : 1.0;
   }
   float above = part_above(flat_lamp);
-  // llvmpipe evaluates what follows for all pixels, and skips the loop over the corners where no pixel needs it.
+  // llvmpipe evaluates the code below for all pixels, and skips the loop over the corners where no pixel needs it.
   flat_lamp.corner_count = share > 0.0 ? flat_lamp.corner_count : 0;
   vec3 specular = specular_of(flat_lamp, material, surface, shading);
   scale *= cos_l > 0.0 ? 1.0 / max(above, 1e-3) : 0.0;

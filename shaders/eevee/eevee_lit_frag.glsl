@@ -78,7 +78,7 @@ void main()
   material.diffuse *= 1.0 - transmission.part;
   vec3 passed = layered(transmission.passed, vec3(0.0), vec3(0.0));
   sum += passed * transmission.behind.rgb + layered(transmission.mirrored, vec3(0.0), vec3(0.0));
-  // 1 - what the surface passes of what is behind a transparent picture, as the mean of red, green and blue.
+  // 1 - the transmittance of the surface, before a transparent picture, as the mean of red, green and blue.
   alpha = 1.0 - dot(passed, vec3(1.0 / 3.0)) * (1.0 - transmission.behind.a);
 #    ifdef USE_WORLD
   mirror_seen = mirror_part(surface, roughness_behind);

@@ -192,7 +192,7 @@ int filter_of(ShadowCubeData cube)
 /** \a offset: \see ShadowPlace. */
 ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
-  // No early returns: llvmpipe evaluates what follows them all the same, and then selects each member.
+  // No early returns: llvmpipe evaluates the code after them all the same, and then selects each member.
   // Distance along the axis of the face that contains the receiver.
   vec3 from_light = surface.position_ws - light.position_ws;
   float w = largest(from_light);

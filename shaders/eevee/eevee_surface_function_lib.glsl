@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: the surface function of a material. doc/surfaces.md describes what it reads and writes.
+// For fragment shaders: the surface function of a material. doc/surfaces.md describes its inputs and outputs.
 #include "eevee/eevee_full_material_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_surface_function_shared.h"

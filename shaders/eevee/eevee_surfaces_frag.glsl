@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// What surfaces are, without light: layers for compositing.
+// Properties of surfaces without light, as layers for compositing.
 #include "eevee/eevee_material_lib.glsl"
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_lib.glsl"

@@ -34,7 +34,7 @@ vec4 smooth_behind(vec2 texco, float level)
   return low.y * bottom + high.y * top;
 }
 
-/** Radiance and alpha of what is behind. \a texco: in [0, 1]. \a level: at least 0; at 0 it is not blurred. */
+/** Radiance and alpha of the picture behind. \a texco: in [0, 1]. \a level: at least 0; at 0 it is not blurred. */
 vec4 behind_at(vec2 texco, float level)
 {
   level = min(level, float(textureQueryLevels(behind) - 1));
@@ -47,11 +47,11 @@ vec4 behind_at(vec2 texco, float level)
 struct Transmission {
   /** Part of the light in the base that passes instead of being scattered. */
   float part;
-  /** What the base passes of the radiance behind it, as if no layer lay over it. */
+  /** Part of the radiance behind the base that the base passes, as if no layer lay over it. */
   vec3 passed;
   /** Radiance that surfaces behind this one mirror, as much as the base passes of it. */
   vec3 mirrored;
-  /** Radiance towards the viewer, W/(sr m²), and alpha of what is behind. */
+  /** Radiance towards the viewer, W/(sr m²), and alpha of the picture behind. */
   vec4 behind;
 };
 
@@ -203,7 +203,7 @@ vec4 radiance_behind(inout Way way, Passage nearest, float slab_m, float level, 
 }
 
 /**
- * \a material: with the diffuse albedo of a surface without transmission. \a roughness: perceptual, of the blur of what is behind.
+ * \a material: with the diffuse albedo of a surface without transmission. \a roughness: perceptual, of the blur of the picture behind.
  */
 Transmission make_transmission(MaterialData material, Surface surface, float roughness)
 {
@@ -238,7 +238,7 @@ Transmission make_transmission(MaterialData material, Surface surface, float rou
     float shrunk = length(surface_object_from_world * way.ray.direction);
     slab_m = shrunk > 1e-9 && shrunk < 1e9 ? thickness / shrunk : 0.0;
   }
-  // Microfacets blur what is behind a body, over the samples.
+  // Microfacets blur the picture behind a body, over the samples.
   float level = is_body && has_samples ? 0.0 : transmission_level(roughness, surface_lens.z, float(textureSize(behind, 0).y));
   result.behind = radiance_behind(way, Passage(result.part * material.diffuse, roughness), slab_m, level, has_samples);
   result.passed = way.left;

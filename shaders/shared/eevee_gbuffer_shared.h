@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The G-buffer: what deferred lighting reads of a surface, in one texel of four floats. They are, in this order: the shading normal and the
-// normal of the triangle, both on the visible side; the entry of material_block, and above it, as a half float, the change of the shading
-// normal from pixel to pixel: the root of the sum of the squares of that to the right and that up, or 0 if nothing reflects specularly;
-// and the depth of gbuffer_depth(). \see filtered_alpha
+// The G-buffer: the properties of a surface that deferred lighting reads, in one texel of four floats. They are, in this order: the
+// shading normal and the normal of the triangle, both on the visible side; the entry of material_block, and above it, as a half float, the
+// change of the shading normal from pixel to pixel: the root of the sum of the squares of that to the right and that up, or 0 if nothing
+// reflects specularly; and the depth of gbuffer_depth(). \see filtered_alpha
 #ifndef EEVEE_GBUFFER_SHARED_H
 #define EEVEE_GBUFFER_SHARED_H
 

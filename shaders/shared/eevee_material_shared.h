@@ -53,7 +53,7 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_THICKNESS 16384u
 /** Unlit material: its radiance is the base colour. */
 #define INPUT_UNLIT 65536u
-/** The surface is blended over what is behind it. */
+/** The surface is blended over the picture behind it. */
 #define INPUT_BLENDED 131072u
 /** The material has an alpha mask and a surface function, which reads the alpha of the mask. */
 #define INPUT_MASKED 262144u
@@ -176,8 +176,9 @@ SHARED_FUNCTION vec3 beer_lambert(vec3 absorption, float length_m)
 }
 
 /**
- * Mip level of a picture of \a height_px that transmission through a surface of \a roughness reads. The blur is a part of the picture: 2^(10
- * (r - 1)) of its height with r = roughness · clamp(2 ior - 2, 0, 1), as in Khronos's sample viewer, whose picture has 1024 texels in height and width.
+ * Mip level of a picture of \a height_px that transmission through a surface of \a roughness reads. The blur is a part of the picture:
+ * 2^(10 (r - 1)) of its height with r = roughness · clamp(2 ior - 2, 0, 1), as in Khronos's sample viewer, whose picture has 1024 texels
+ * in height and width.
  */
 SHARED_FUNCTION float transmission_level(float roughness, float ior, float height_px)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light that the microfacets of a GGX surface reflect more than once (Kulla and Conty Estevez 2017, "Revisiting Physically Based
-// Shading at Imageworks"). A lobe of its own reflects what ggx_lobe loses, and the diffuse part reflects what both lobes leave.
+// Shading at Imageworks"). A lobe of its own reflects the light that ggx_lobe loses, and the diffuse part reflects the rest.
 // Both are products of a function of the light and the same function of the viewer, so that they are reciprocal.
 #ifndef EEVEE_MULTISCATTER_SHARED_H
 #define EEVEE_MULTISCATTER_SHARED_H

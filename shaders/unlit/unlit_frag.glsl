@@ -49,7 +49,7 @@ float shadow()
 #endif
 
 #ifdef USE_FULL_MATERIAL
-/** Part of what is behind that the surface covers. */
+/** Part of the picture behind that the surface covers. */
 float opacity()
 {
   bool passes_light = !has_input(INPUT_BLENDED | INPUT_MASKED | INPUT_TRANSMISSION);

@@ -181,7 +181,7 @@ void add(Hasher &hash, const scene::Animation &animation)
   }
 }
 
-/** The rest shape, and what deforms it. */
+/** The rest shape and its deformations. */
 void add(Hasher &hash, const scene::DeformedMesh &deformed)
 {
   hash.add(deformed.mesh);

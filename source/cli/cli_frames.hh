@@ -77,8 +77,9 @@ class FrameSequence {
   void remove_unfinished_files() const;
 
   /**
-   * Chooses what pose() plays, and adds a warning to \a scene about animations that are left out. \throws
-   * std::runtime_error that names the reason if there is nothing to play, or if named animations move the same thing
+   * Chooses the animations that pose() plays, and adds a warning to \a scene about animations that are left out.
+   * \throws std::runtime_error that names the reason if there is nothing to play, or if named animations move the same
+   * thing
    */
   void choose_animations(scene::Scene &scene);
   /** Whether each sample of a frame has another time. */

@@ -103,7 +103,7 @@ void check_same_picture(const std::string &path, const ExrPart &part, const std:
       fail(name, value_of(part), value_of(first));
     }
   };
-  // A setting says more than the fingerprint of what it changes.
+  // A setting says more than the fingerprint that it changes.
   const std::string content = "gnomon:content";
   names.erase(content);
   std::ranges::for_each(names, check);

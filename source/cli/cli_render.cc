@@ -198,7 +198,7 @@ std::future<ImportedScene> start_import(const RenderOptions &options, const Stop
   });
 }
 
-/** Takes the rendered picture, or what is shown in its place, and the layers beside it, from the device. */
+/** Takes the rendered picture, or the debug view in its place, and the layers beside it, from the device. */
 RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene::Scene &scene,
                              const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
                              const std::optional<draw::TargetTexture> &display, int index)
@@ -276,7 +276,7 @@ class PictureInWriting {
     });
     return true;
   }
-  /** \return false if values of the picture are not finite. \throws what write_picture throws */
+  /** \return false if values of the picture are not finite. \throws the exceptions of write_picture */
   bool finish()
   {
     if (!writing_.valid()) {

@@ -256,7 +256,7 @@ static std::string settings_text(const CLI::App &command)
     }
     std::string value = option->count() > 0 ? CLI::detail::join(option->results(), " ") : option->get_default_str();
     if (name == "--world") {
-      // Its folder may differ between machines. What is in it is compared, too.
+      // Its folder may differ between machines. Its content is compared, too.
       value = std::filesystem::path(value).filename().string();
     }
     value = plain_text(value, option->get_type_name());

@@ -407,7 +407,7 @@ std::vector<ShaderJob> jobs_of(const ShaderManifest &project, const gpu::ShaderF
   return jobs;
 }
 
-/** Writes --depfile: what \a checks have read. */
+/** Writes --depfile: the files that \a checks have read. */
 void write_dependencies(std::span<const shader_check::ProgramCheck> checks, const CheckArguments &arguments)
 {
   std::vector<std::string> read;

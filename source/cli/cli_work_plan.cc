@@ -145,7 +145,7 @@ std::string planned_fault(const std::string &name, const std::string &id)
   }
 }
 
-/** \throws std::exception if \a document is not what write_plan writes */
+/** \throws std::exception if \a document has not the form that write_plan writes */
 static WorkPlan checked_plan(const json &document)
 {
   WorkPlan plan = from_json(document);

@@ -29,8 +29,8 @@ struct CullingVolume {
 };
 
 /**
- * The planes of a frustum, moved outwards by what rounding errors may add to the height of a point far from the origin.
- * A volume is outside if its centre is lower than -culling_reach() above one of them.
+ * The planes of a frustum, moved outwards by the error that rounding may add to the height of a point far from the
+ * origin. A volume is outside if its centre is lower than -culling_reach() above one of them.
  */
 using CullingPlanes = std::array<glm::vec4, 6>;
 

@@ -99,7 +99,7 @@ struct ImportOptions {
    */
   ReportProgress progress{};
 
-  /** The settings of an import; what a host gives to it, and on its own behalf, has no row. */
+  /** The settings of an import. Members that only a host sets have no row. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };

@@ -29,9 +29,9 @@ struct Limits {
   /** The driver draws on the CPU. Mesa's takes the time of each texel under a footprint for an anisotropic lookup. */
   bool is_software = false;
   /**
-   * Vertices are moved to a grid with 2 to the power of this cells along a pixel's edge, and what is interpolated
-   * between them moves along. Read of devices of Vulkan, of which SwiftShader has 4; those of OpenGL are taken to have
-   * 8, which is common.
+   * Vertices are moved to a grid with 2 to the power of this cells along a pixel's edge, and the values that are
+   * interpolated between them moves along. Read of devices of Vulkan, of which SwiftShader has 4; those of OpenGL are
+   * taken to have 8, which is common.
    */
   int subpixel_bits = 8;
   /** Alignment in bytes of BufferRange::offset_bytes, for uniform and storage blocks. */

@@ -356,7 +356,7 @@ struct DeclaredConstant {
   std::uint32_t id = 0;
   std::string_view type;
   std::string_view name;
-  /** `DEFAULT;` and what follows it. */
+  /** `DEFAULT;` and the text after it. */
   std::string_view rest;
 };
 

@@ -30,7 +30,8 @@ enum class Format : std::uint8_t {
   Depth32F,
   /** The same with steps of 1 / 65535. Use it only where the error of half a step is accounted for. */
   Depth16,
-  /** That of a texture of the host, which can only be looked up. A lookup returns what the format stands for. */
+  /** That of a texture of the host, which can only be looked up. A lookup returns the values that the format stands
+     for. */
   Host,
 };
 

@@ -59,7 +59,7 @@ double timed(Clock clock, const std::function<void()> &work)
 
 /**
  * Returns free memory to the system, so that work of each size pays for the memory that it touches, as the first work
- * of a process. Otherwise, the C library would keep what small counts need, and not what large ones do.
+ * of a process. Otherwise, the C library would keep the memory that small counts need, and return that of large ones.
  */
 void forget_memory()
 {

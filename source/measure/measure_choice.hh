@@ -105,7 +105,7 @@ struct Pilot {
 /**
  * Renders pictures with pilot_techniques() and 1, 2, 4, ... samples, no more than \a requirement needs. Per-lamp shadow
  * settings apply. \a has_multiscatter: of pictures and reference, see eevee::Settings.
- * \throws what rendering throws, and std::runtime_error if no picture is finite.
+ * \throws the exceptions of rendering, and std::runtime_error if no picture is finite.
  */
 [[nodiscard]] Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
                               glm::ivec2 size_px, const reference::Tracer &tracer, const Requirement &requirement,

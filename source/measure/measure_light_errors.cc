@@ -31,7 +31,7 @@ constexpr std::array<double, 3> distances = {0.5, 2.0, 8.0};
 constexpr std::array<std::pair<LampOutline, const char *>, 3> outlines = {
     {{LampOutline::Round, "round"}, {LampOutline::Rectangle, "rectangle"}, {LampOutline::Ellipse, "ellipse"}}};
 
-/** A lamp and, for specular light, a lobe; with what was computed for them. */
+/** A lamp and, for specular light, a lobe; with the values that were computed for them. */
 struct LightCase {
   std::size_t outline = 0;
   double size = 0.0;

@@ -44,7 +44,7 @@ struct SceneReport {
   std::filesystem::path path;
   /** Hash of the scene's file and of the files it refers to. Measurements are valid only for the same hash. */
   std::string fingerprint;
-  /** A description of what lights the scene from all around; empty: nothing. */
+  /** A description of the light from all around the scene; empty: none. */
   std::string world;
   /** RMSE of the reference due to its own noise. \see ReferencePicture::noise */
   double reference_noise = 0.0;

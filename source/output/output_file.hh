@@ -15,10 +15,10 @@
 /**
  * Writing of files. All functions may be called on any thread.
  *
- * A path names what it leads to: symbolic links are followed, also to a file that does not exist yet. A regular file is
- * replaced as a whole, and keeps its permissions and, as far as the process may set it, its owner. Another name of it
- * (a hard link) keeps the old content. A pipe, a device or a descriptor of the process (`/dev/stdout`, `/dev/fd/3`) is
- * written to.
+ * A path names the target of its links: symbolic links are followed, also to a file that does not exist yet. A regular
+ * file is replaced as a whole, and keeps its permissions and, as far as the process may set it, its owner. Another name
+ * of it (a hard link) keeps the old content. A pipe, a device or a descriptor of the process (`/dev/stdout`,
+ * `/dev/fd/3`) is written to.
  */
 namespace gnomon::output {
 
@@ -71,9 +71,9 @@ enum class Flush {
 };
 
 /**
- * Writes what \a write gives to a Stream. On any failure, and if the process ends at any moment, a regular file has its
- * old content, or does not exist if it did not before. What \a write throws is passed on. Other outputs get no byte
- * unless \a write returns.
+ * Writes the bytes that \a write gives to a Stream. On any failure, and if the process ends at any moment, a regular
+ * file has its old content, or does not exist if it did not before. Exceptions of \a write are passed on. Other outputs
+ * get no byte unless \a write returns.
  *
  * \throws Error also for an existing file or folder without permission to write
  */

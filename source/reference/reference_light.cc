@@ -274,7 +274,7 @@ glm::dvec3 Integrator::radiance(Ray ray, int sample, std::uint64_t key) const
 {
   constexpr double least_open = 1e-6;
   glm::dvec3 sum(0.0);
-  // The part of what is behind the surfaces so far that is seen through them.
+  // The part of the light behind the surfaces so far that passes through them.
   double open = 1.0;
   while (open > least_open) {
     const std::optional<Hit> hit = tracer.closest(ray, Faces::Drawn);

@@ -21,7 +21,7 @@ inline constexpr std::size_t blend_order_exact_max = 1024;
 [[nodiscard]] glm::vec4 eye_of(const draw::View &view);
 
 /**
- * Indices of \a boxes in an order in which what they hold can be blended: the farthest first.
+ * Indices of \a boxes in an order in which their content can be blended: the farthest first.
  *
  * Two boxes that a plane across a coordinate axis separates are in their true order, whatever their size: no ray from
  * the eye meets the box beyond the plane first. For the others, and where boxes are behind each other in a circle, the

@@ -19,8 +19,8 @@ namespace gnomon::render_scene {
 [[nodiscard]] bool has_surface_function(const scene::Scene &scene, const scene::Material &material);
 
 /**
- * Whether the mesh is blended over what is behind it. false: another alpha mode, or all of it is opaque by its factor
- * and its texture, and it has no surface function.
+ * Whether the mesh is blended over the picture behind it. false: another alpha mode, or all of it is opaque by its
+ * factor and its texture, and it has no surface function.
  */
 [[nodiscard]] bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh);
 

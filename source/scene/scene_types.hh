@@ -89,7 +89,7 @@ enum class ImageUse {
 
 /** The cover of a mask. */
 struct MaskCover {
-  /** Least alpha of what is covered. 0: no mask. */
+  /** Least alpha of a covered texel. 0: no mask. */
   float cutoff = 0.0F;
   /** Whether alphas are interpolated between the centres of texels; otherwise a texel is covered or not. */
   bool is_linear = false;

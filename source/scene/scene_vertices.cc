@@ -14,7 +14,7 @@ namespace gnomon::scene {
 
 namespace {
 
-/** Calls \a visit with each vector of a mesh, its new values and what they are. */
+/** Calls \a visit with each vector of a mesh, its new values and their name. */
 template <typename Visit>
 void for_each_values(const VertexValues &values, auto &mesh, Visit &&visit)
 {

@@ -69,7 +69,7 @@ std::string clamp_radiances(WorldPicture &picture)
   }
   for (glm::vec3 &texel : picture.texels) {
     for (int c = 0; c < 3; c++) {
-      // False for what is not a number, too.
+      // False for NaN, too.
       texel[c] = texel[c] > 0.0F ? std::min(texel[c], largest[c]) : 0.0F;
     }
   }

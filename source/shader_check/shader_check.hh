@@ -85,7 +85,7 @@ struct CheckRule {
   /** Whether only Gnomon's own shaders need it: for others it is off until its level is set. */
   bool is_own = false;
   enum class Reads : std::uint8_t { Compiler, Declarations, Functions };
-  /** What finds the mistakes: messages of compilers, or what a check reads itself. */
+  /** The source of the findings: messages of compilers, declarations or functions. */
   Reads reads = Reads::Compiler;
 };
 
@@ -168,7 +168,7 @@ struct ProgramOptions {
   std::vector<std::string> features;
 };
 
-/** Features of devices that allow what SPIR-V for a target otherwise forbids, by their names in Vulkan. */
+/** Features of devices that allow SPIR-V which the target otherwise forbids, by their names in Vulkan. */
 [[nodiscard]] std::span<const std::string_view> device_features();
 
 struct ProgramCheck {

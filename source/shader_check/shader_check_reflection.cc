@@ -267,7 +267,7 @@ std::string_view to_string(ProgramBinding::Kind kind)
 
 namespace {
 
-/** Adds what \a stage uses of \a declarations. */
+/** Adds those of \a declarations that \a stage uses. */
 void add_bindings(const std::vector<Declaration> &declarations, ProgramBinding::Kind kind, Stage stage,
                   std::vector<ProgramBinding> &bindings)
 {

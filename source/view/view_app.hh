@@ -31,7 +31,7 @@ class App {
   ~App();
 
   /**
-   * Process events, draw what has changed, and present the frame. \a may_wait: wait for an event first if the frame
+   * Process events, draw the changes, and present the frame. \a may_wait: wait for an event first if the frame
    * would not differ from the last.
    */
   void draw_frame(bool may_wait);

@@ -485,7 +485,7 @@ constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 
 constexpr std::array commands = std::to_array<Command>({
     {"open", "FILE", 1, 1, Need::Frame, open},
-    // No frame: what follows is done before the file can be open, however fast it is read.
+    // No frame: the next command runs before the file can be open, however fast it is read.
     {"drop", "FILE", 1, 1, Need::Nothing, drop},
     {"cancel", "", 0, 0, Need::Nothing, cancel_open},
     {"save", "FILE", 1, 1, Need::Frame, save},

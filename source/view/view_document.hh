@@ -68,8 +68,8 @@ class Document {
   }
 
   /**
-   * Set what \a animation animates to its values at \a seconds. Not an undo step, and a saved scene stays saved. Ends a
-   * transform. \throws scene::InvalidEdit
+   * Set the targets of \a animation to its values at \a seconds. Not an undo step, and a saved scene stays saved. Ends
+   * a transform. \throws scene::InvalidEdit
    */
   void pose(const scene::Animation &animation, double seconds);
 

@@ -58,7 +58,7 @@ class Window {
   void end_frame();
   /** Show the back buffer. \return false: the frame may not be seen, and is to be drawn again \throws gpu::Error */
   bool swap();
-  /** What the last frame shows: rows from the bottom, four bytes for each pixel. \throws gpu::Error */
+  /** Pixels of the last frame: rows from the bottom, four bytes for each pixel. \throws gpu::Error */
   [[nodiscard]] std::vector<std::uint8_t> read_pixels();
 
   /** Whether the driver has lost the context. Drawing then has no effect. */

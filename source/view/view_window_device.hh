@@ -13,7 +13,7 @@ struct GLFWwindow;
 
 namespace gnomon::view {
 
-/** A window of GLFW, the device that draws into it, and what the device needs. \pre GLFW is initialised */
+/** A window of GLFW, and the device that draws into it. \pre GLFW is initialised */
 class WindowDevice {
  public:
   /** The back buffer. */

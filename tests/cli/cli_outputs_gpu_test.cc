@@ -285,7 +285,7 @@ TEST_F(SlowOutputsTest, AreOldOrWholeWhereverTheProcessIsKilled)
   fail_each_call(true);
 }
 
-/** What surrounds a process changes no picture and gives no message. */
+/** The environment of a process changes no picture and gives no message. */
 TEST_F(SlowOutputsTest, AreThoseOfAnyHomeClockAndExtensions)
 {
   const std::string command = "render '" GNOMON_SOURCE "/examples/scenes/plaza.glb' --size 48x27 --samples 2 ";

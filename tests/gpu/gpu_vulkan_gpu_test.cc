@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tests of all backends do not show of Vulkan's. These need no GNOMON_TEST_BACKEND.
+// Tests of Vulkan's backend alone. They do not need GNOMON_TEST_BACKEND.
 #include "gpu/gpu_testing.hh"
 #include "gpu/gpu_weak_barrier.hh"
 #include "gpu_device_fixture.hh"

@@ -77,7 +77,7 @@ constexpr glm::ivec2 size_px{6, 4};
 constexpr std::array<float, 4> before = {0.2F, 0.4F, 0.6F, 0.8F};
 constexpr Texel before_bytes = {51, 102, 153, 204};
 
-/** What Picture writes to the pixel of a row from the bottom. */
+/** The value that Picture writes to the pixels of a row from the bottom. */
 Texel drawn(int x, int y)
 {
   return {std::uint8_t(x), std::uint8_t(y), 0, 255};
@@ -395,7 +395,7 @@ TEST_F(VulkanHostGpu, AnImageHasNoDepthAndIsDrawnIntoAfterTheError)
   host->destroy(image);
 }
 
-/** What draws of a list write to a picture of floats. */
+/** The values that draws of a list write to a picture of floats. */
 class FloatPicture {
  public:
   explicit FloatPicture(Device &device) : device_(device) {}
@@ -519,7 +519,7 @@ void main()
     };
     fill({0.2F, 0.4F, 0.6F, 0.8F}, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     EXPECT_EQ(glm::round(255.0F * looked_up(texture)), glm::vec4(51, 102, 153, 204));
-    // What the host writes between lists, in either layout.
+    // Values that the host writes between lists, in either layout.
     fill({1, 0, 0, 1}, VK_IMAGE_LAYOUT_GENERAL);
     EXPECT_EQ(looked_up(texture_general), glm::vec4(1, 0, 0, 1));
 

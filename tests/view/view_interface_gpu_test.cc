@@ -38,7 +38,7 @@ class ViewInterfaceGpu : public test::GpuDeviceTest {
       ImGui::DestroyContext();
     }
   }
-  /** What \a draw adds to an empty interface, rows from the bottom. */
+  /** Pixels that \a draw adds to an empty interface, rows from the bottom. */
   std::vector<glm::u8vec4> drawn(const std::function<void(ImDrawList &)> &draw)
   {
     ImGui::NewFrame();

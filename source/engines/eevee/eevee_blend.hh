@@ -13,7 +13,7 @@ struct TransmissiveObject {
   bool is_blended = false;
 };
 
-/** Objects that are blended over what is behind them, from back to front: decision 0015. Internal to the engine. */
+/** Objects that are blended over the picture behind them, from back to front: decision 0015. Internal to the engine. */
 class BlendPass {
  public:
   BlendPass(draw::ObjectBuffer &objects, const RenderBuffers &buffers);

@@ -76,7 +76,7 @@ class BudgetedPicture {
    */
   void begin(double budget_seconds);
   /**
-   * Draw what the budget allows, and write the picture to \a target. The viewport must be synced, as for
+   * Draw as much as the budget allows, and write the picture to \a target. The viewport must be synced, as for
    * draw::Viewport::draw. \pre begin
    * \return whether the picture is complete
    * \throws gpu::Error as draw::Viewport::draw

@@ -51,7 +51,7 @@ struct SharedData {
   std::uint64_t loss_count = 0;
 };
 
-/** The modules of a viewport, and what is left of its state. */
+/** The modules of a viewport, and the rest of its state. */
 struct Data final : draw::EngineViewportData {
   /** \a shared_data: of the engine. Empty or destroyed: this viewport is the first. */
   Data(render_scene::RenderScene &scene, std::weak_ptr<SharedData> &shared_data);

@@ -12,7 +12,7 @@ class Film {
   void sync(const Settings &settings);
   /** Create the texture, unless it exists. */
   void make(gpu::Device &device, glm::ivec2 size_px);
-  /** Destroy what depends on the size of the picture. */
+  /** Destroy the targets that depend on the size of the picture. */
   void resized();
   /** Record the film's own pass. \see add_to */
   void record(const gpu::Shader &shader, const gpu::Texture &radiance, glm::ivec2 origin_px,

@@ -125,7 +125,7 @@ struct FrameStep {
   std::function<void(FrameSample &)> work{};
 };
 
-/** A step, and what it did in the samples of the current picture. */
+/** A step, and its work in the samples of the current picture. */
 struct DrawnStep {
   FrameStep step;
   /** Empty before the first sample. It is needed if at least one sample needed it. */
@@ -184,7 +184,7 @@ void record_calls(FrameSample &sample, const draw::View &view, gpu::CommandList 
 void record_pass(FrameSample &sample, gpu::CommandList &list, const gpu::Framebuffer &framebuffer,
                  const gpu::PassActions &actions);
 
-/** Actions of a render pass that draws over what is there. */
+/** Actions of a render pass that keeps the content of its attachments. */
 [[nodiscard]] inline gpu::PassActions drawn_over(const gpu::Rectangle &scissor = {})
 {
   return {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load, .scissor = scissor};

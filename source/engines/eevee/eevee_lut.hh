@@ -12,7 +12,7 @@ struct ResourceReport;
 /** Tables of the specular lobe that programs look up. \see eevee_tables.hh Internal to the engine. */
 class LookupTables {
  public:
-  /** Create the tables that are needed, and free the others. \a features: of the frame. \a read: what programs read. */
+  /** Create the tables that are needed, and free the others. \a features: of the frame. \a read: those of programs. */
   void make(gpu::Device &device, Feature features, Feature read);
   void bind(draw::ShadingGroup &group) const;
   void report(ResourceReport &report) const;

@@ -39,9 +39,9 @@ class SceneMaterials {
   void make(render_scene::RenderScene &scene, const Settings &settings, const DrawnMaterials &drawn);
   /** Use the current buffers of \a scene, which another engine may have made anew. */
   void follow(render_scene::RenderScene &scene);
-  /** Bind what lit programs read. */
+  /** Bind the resources that lit programs read. */
   void bind(draw::ShadingGroup &group) const;
-  /** Bind what programs of shadow casters read. */
+  /** Bind the resources that programs of shadow casters read. */
   void bind_casters(draw::ShadingGroup &group, bool has_function) const;
   void report(const render_scene::RenderScene &scene, ResourceReport &report) const;
 

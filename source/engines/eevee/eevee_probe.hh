@@ -6,7 +6,7 @@
 
 namespace gnomon::eevee {
 
-/** Passes and textures of Inspection: what the surfaces of a view are, and the visibility of a lamp. Internal. */
+/** Passes and textures of Inspection: properties of the surfaces of a view, and the visibility of a lamp. Internal. */
 class SurfaceProbe {
  public:
   SurfaceProbe(draw::ObjectBuffer &objects, const RenderBuffers &buffers, const DepthPasses &depth,

@@ -20,9 +20,9 @@ struct RenderBuffers {
   gpu::Buffer view_block;
   gpu::Sampler nearest;
 
-  /** Create what does not exist. */
+  /** Create the targets that do not exist yet. */
   void make(draw::Viewport &viewport);
-  /** Destroy what depends on the size of the picture. */
+  /** Destroy the targets that depend on the size of the picture. */
   void resized();
   void report(draw::Viewport &viewport, ResourceReport &report) const;
 };

@@ -40,7 +40,7 @@ struct LightPart {
     Lamp,
     /** The world and the background. */
     World,
-    /** Light that surfaces emit: what the camera sees of it, and what it gives to other surfaces. */
+    /** Light that surfaces emit: seen by the camera directly, and reflected by other surfaces. */
     Emission,
   };
   Kind kind = Kind::All;

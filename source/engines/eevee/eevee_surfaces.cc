@@ -71,7 +71,7 @@ void SurfacePasses::record(const Recording &recording)
   groups_.clear();
   is_mirrored_.assign(objects.index_end(), false);
   std::vector<Kind> kinds;
-  // By mesh and by what differs between its objects: the number of the kind, from 1. 0: there is none yet.
+  // By mesh and by the properties in which its objects differ: the number of the kind, from 1. 0: there is none yet.
   std::vector<std::array<std::uint32_t, 4>> numbers(scene.scene().meshes().index_end());
   for (const draw::ObjectIndex index : objects_) {
     const render_scene::RenderObject &object = scene.object(index);

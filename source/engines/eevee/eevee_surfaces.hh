@@ -63,7 +63,7 @@ class SurfacePasses {
   void end_sync();
   /** Record the calls of all objects anew, unless \a inputs and objects are those of the last recording. */
   void update(render_scene::RenderScene &scene, ShaderCache &shaders, const SurfaceInputs &inputs, const BindLit &bind);
-  /** Let the next update() record, because the passes refer to what no longer exists. */
+  /** Let the next update() record, because the passes refer to destroyed resources. */
   void forget()
   {
     recorded_.reset();

@@ -31,7 +31,7 @@ struct Settings {
 struct Display {
   /** The edges of all triangles, from both sides, instead of surfaces. Only nearer edges hide them. */
   bool is_wireframe = false;
-  /** Surfaces, or edges, hide half of what is behind them. As blended surfaces, they have no depth. */
+  /** Surfaces, or edges, hide half of the picture behind them. As blended surfaces, they have no depth. */
   bool is_xray = false;
 
   bool operator==(const Display &) const = default;

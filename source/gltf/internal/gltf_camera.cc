@@ -137,7 +137,7 @@ PlacedCamera default_camera(const Bounds &bounds)
     const glm::dvec3 from_center((corner & 1) != 0 ? half.x : -half.x, (corner & 2) != 0 ? half.y : -half.y,
                                  (corner & 4) != 0 ? half.z : -half.z);
     const glm::dvec3 at(glm::transpose(glm::dmat3(axes)) * from_center);
-    // At the distance d from the centre's plane, what is seen reaches to (d - z) · slope.
+    // At the distance d from the centre's plane, the view reaches to (d - z) · slope.
     low = glm::min(low, glm::dvec2(at) - at.z * slope);
     high = glm::max(high, glm::dvec2(at) + at.z * slope);
     nearest = std::max(nearest, at.z);

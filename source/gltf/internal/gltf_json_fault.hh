@@ -8,9 +8,9 @@
 namespace gnomon::gltf {
 
 /**
- * Where a text is not JSON (RFC 8259), and what stands there: "line 3, column 7 (byte 57): a comma before '}'". Lines
- * and columns count from 1, bytes from 0; a column is a byte. Empty if no fault is found. The time is linear in the
- * size, and no depth is too large. For messages: the parser decides what is read.
+ * The place and the kind of the first fault of a text that is not JSON (RFC 8259): "line 3, column 7 (byte 57): a comma
+ * before '}'". Lines and columns count from 1, bytes from 0; a column is a byte. Empty if no fault is found. The time
+ * is linear in the size, and no depth is too large. For messages: the parser decides which texts are valid.
  */
 [[nodiscard]] std::string json_fault(std::string_view text);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the backends share.
+// Tables of resources by id, and a counter's difference, for all backends.
 #pragma once
 
 #include "gpu_error.hh"

@@ -23,7 +23,7 @@ class VulkanContext {
    * the end of the device. \throws Error
    */
   VulkanContext(bool is_debug, GLFWwindow *window, std::function<void(std::string_view message)> sink);
-  /** The device of a host. \throws Error that names what it lacks */
+  /** The device of a host. \throws Error that names the features that it lacks */
   explicit VulkanContext(const VulkanHost &host);
   ~VulkanContext();
   VulkanContext(const VulkanContext &) = delete;
@@ -97,7 +97,7 @@ class VulkanContext {
   /** The names of the features and extensions that \a candidate lacks. */
   [[nodiscard]] std::vector<std::string> missing_in(VkPhysicalDevice candidate,
                                                     const VkPhysicalDeviceProperties &properties);
-  /** Sets what follows from the physical device and from the features that are enabled. */
+  /** Sets the members that follow from the physical device and from the features that are enabled. */
   void describe(const VkPhysicalDeviceFeatures &enabled, bool has_layer_output);
   /** Load the functions of the instance, and of the device. \throws Error that names the first one that is missing */
   void load_instance();

@@ -56,7 +56,7 @@ class VulkanDevice final : public Device {
     VulkanBuffer buffer;
     VkBufferView buffer_view = VK_NULL_HANDLE;
     TextureDesc desc;
-    /** Copy of the image for passes that look up what they draw into (PassActions::reads_attachments). */
+    /** Copy of the image for passes that look up their own attachments (PassActions::reads_attachments). */
     std::optional<VulkanImage> copy;
   };
   struct VulkanAttachment {
@@ -102,7 +102,7 @@ class VulkanDevice final : public Device {
     /** Sum of the times that were read. */
     double seconds = 0.0;
   };
-  /** What stands in for bindings that a list does not have: black texels, and zeros. */
+  /** Placeholders for bindings that a list does not set: black texels, and zeros. */
   struct Dummies {
     /** Indexed by whether they are of depths. Of one layer; the view is of an array. */
     std::array<VulkanImage, 2> images;
@@ -118,7 +118,7 @@ class VulkanDevice final : public Device {
     ResourceId texture = 0;
     ResourceId sampler = 0;
   };
-  /** What a list has set. */
+  /** State that the commands of a list have set so far. */
   struct ListState {
     VulkanProgram *program = nullptr;
     std::vector<VkDescriptorBufferInfo> uniforms;
@@ -135,7 +135,7 @@ class VulkanDevice final : public Device {
     PipelineKey pipeline;
     /** Textures that the pass looks up while it draws into them. */
     std::vector<ResourceId> copied;
-    // What the command buffer has, so that it is set again only after changes.
+    // State of the command buffer. It is set again only after changes.
     VkPipeline bound_pipeline = VK_NULL_HANDLE;
     bool has_new_bindings = true;
     bool has_new_push_constants = false;
@@ -189,7 +189,8 @@ class VulkanDevice final : public Device {
   void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
   /** Copies \a bytes to \a buffer, in the order of the commands. */
   void write(const VulkanBuffer &buffer, VkDeviceSize offset_bytes, std::span<const std::byte> bytes);
-  /** Waits for what was recorded if its uploads are large, so that their memory is used again. Not within a list. */
+  /** Waits for the recorded commands if their uploads are large, so that their memory is used again. Not within a list.
+   */
   void finish_large_uploads();
   /** Reads the pending times of \a timer: those which the device has, or \a waits for all. */
   void read_times(Timer &timer, bool waits);
@@ -208,11 +209,11 @@ class VulkanDevice final : public Device {
   void end_pass();
   void set_state(State state);
   void bind_texture(const Command &command, std::vector<BoundTexture> &textures);
-  /** Sets what the next draw needs. \return false if there is nothing to draw from */
+  /** Sets the state of the next draw. \return false if there is nothing to draw from */
   bool prepare_draw(bool is_procedural);
   void bind_descriptors();
   void bind_vertices();
-  /** What is bound to \a binding. */
+  /** The texture that is bound to \a binding. */
   [[nodiscard]] VkDescriptorImageInfo image_info(const VulkanBinding &binding);
 
   std::unique_ptr<VulkanContext> context_;

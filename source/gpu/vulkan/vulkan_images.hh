@@ -49,7 +49,7 @@ inline constexpr ImageUse copied_to{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIP
                                     VK_ACCESS_2_TRANSFER_WRITE_BIT, true};
 }  // namespace use
 
-/** An image, and what the commands that were recorded last do with it. */
+/** An image, and its use by the commands that were recorded last. */
 struct VulkanImage {
   VkImage handle = VK_NULL_HANDLE;
   MemoryPlace place;
@@ -95,7 +95,7 @@ class VulkanBarriers {
   void before_copy(VkBuffer read, const VulkanBufferRange &written);
   /** Before draws, which read any buffers. */
   void before_draws();
-  /** Records what was gathered. */
+  /** Records the barriers that were gathered. */
   void record(VkCommandBuffer commands);
 
  private:

@@ -67,7 +67,7 @@ std::vector<std::uint32_t> memory_types_of(const VkPhysicalDeviceMemoryPropertie
   for (std::uint32_t i = 0; i < properties.memoryTypeCount; i++) {
     const VkMemoryPropertyFlags flags = properties.memoryTypes[i].propertyFlags;
     if ((type_bits >> i & 1U) != 0 && (flags & wanted.required) == wanted.required) {
-      // What is better counts more than what is worse.
+      // One preferred flag outweighs all unwanted flags.
       constexpr int most_flags = 32;
       ranked.emplace_back(std::popcount(flags & wanted.worse) - most_flags * std::popcount(flags & wanted.better), i);
     }

@@ -22,7 +22,7 @@ using VertexTypes = std::array<VertexType, vertex_stream_count>;
 
 [[nodiscard]] VkFormat vertex_format(int component_count, VertexType type);
 
-/** What a pipeline of a program depends on; the rest is dynamic. */
+/** State that is compiled into a pipeline of a program; the rest is dynamic. */
 struct PipelineKey {
   static constexpr std::size_t color_count_max = 8;
   /** The part of State that cannot be dynamic. */

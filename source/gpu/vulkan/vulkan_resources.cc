@@ -650,7 +650,7 @@ void VulkanDevice::texture_read(ResourceId id, int layer, std::span<std::byte> t
     context_->vk.vkCmdCopyImageToBuffer(commands, texture.image.handle, texture.image.last_use.layout, buffer->handle,
                                         1, &region);
   }
-  // So that the CPU reads what the device has written.
+  // So that the CPU reads the values that the device has written.
   const VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,   nullptr,
                                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                  VK_PIPELINE_STAGE_2_HOST_BIT,         VK_ACCESS_2_HOST_READ_BIT};

@@ -29,7 +29,7 @@ struct SpirvImage {
   bool is_comparison = false;
 };
 
-/** What the instructions of one stage say about the variables of its interface, by id. */
+/** Declarations of one stage that its interface needs, by id. */
 struct SpirvModule {
   struct Variable {
     std::uint32_t type = 0;

@@ -19,7 +19,7 @@ struct VulkanBinding {
   bool is_comparison = false;
 };
 
-/** What the device must know about the stages of a program. */
+/** Bindings and vertex inputs of a program. */
 struct SpirvInterface {
   /** By slot. */
   std::vector<VulkanBinding> bindings;

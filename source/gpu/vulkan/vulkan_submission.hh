@@ -11,7 +11,7 @@ namespace gnomon::gpu {
 
 /**
  * Submissions to the queue, in order. Commands are recorded into the open one. A timeline semaphore counts those that
- * the device has finished; what a submission uses is freed after that.
+ * the device has finished; the resources of a submission are freed after that.
  */
 class VulkanSubmissions {
  public:
@@ -57,7 +57,7 @@ class VulkanSubmissions {
     std::function<void()> destroy;
   };
   [[nodiscard]] VkResult wait_result(std::uint64_t number);
-  /** Destroys what the device no longer uses. */
+  /** Destroys resources that the device no longer uses. */
   void collect();
 
   VulkanContext &context_;

@@ -201,7 +201,7 @@ void VulkanSwapchain::destroy()
   catch (const Error & /*error*/) {
     device_.destroy_retired();
   }
-  // Also for what is being presented.
+  // Also for an image that is being presented.
   vk_.vkDeviceWaitIdle(context_.device);
   for (VkSemaphore semaphore : semaphores) {
     context_.vk.vkDestroySemaphore(context_.device, semaphore, nullptr);

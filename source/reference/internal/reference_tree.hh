@@ -62,7 +62,7 @@ struct Tracer::Tree {
   void add_object(std::uint32_t index);
   void place();
   void build();
-  /** Callbacks of Embree for one triangle: its box, whether it is a ray's closest hit, and what it lets through. */
+  /** Callbacks of Embree for one triangle: its box, whether it is a ray's closest hit, and its transmittance. */
   static void set_bounds(const RTCBoundsFunctionArguments *arguments);
   static void intersect(const RTCIntersectFunctionNArguments *arguments);
   static void occlude(const RTCOccludedFunctionNArguments *arguments);

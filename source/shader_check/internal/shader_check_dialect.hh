@@ -13,7 +13,7 @@ struct TargetChoice {
 
 /**
  * The target that stages were written for, as their versions, profiles, extensions and declarations show it, and those
- * of the files that they include. Conditions are not evaluated; what stands under one weighs less than the rest.
+ * of the files that they include. Conditions are not evaluated; lines under a condition weigh less than others.
  */
 [[nodiscard]] TargetChoice choose_target(std::span<const Program::File> stages, const gpu::ShaderFiles &files,
                                          std::span<const std::string> folders);

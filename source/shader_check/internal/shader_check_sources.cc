@@ -238,7 +238,7 @@ class StageSource::Includer : public glslang::TShader::Includer {
     return new IncludeResult(name_of(file), text->data(), text->size(), nullptr);
   }
 
-  /** Counts the bytes of an include. What a guard skips is counted apart: glslang only looks for its end. */
+  /** Counts the bytes of an include. Bytes that a guard skips are counted apart: glslang only looks for its end. */
   void count(std::size_t file, std::string_view text)
   {
     if (guards_.empty()) {

@@ -70,7 +70,7 @@ struct SpirvVariable {
   spv::StorageClass storage = spv::StorageClassFunction;
 };
 
-/** What the declarations of a module consist of. */
+/** Declarations of a module of SPIR-V. */
 struct SpirvModule {
   std::map<std::uint32_t, std::string> names;
   std::map<std::uint32_t, SpirvType> types;
@@ -144,7 +144,8 @@ struct SpirvModule {
       case spv::OpSpecConstant: constants[one.result_id] = words[3]; break;
       case spv::OpVariable: variables.push_back({one.result_id, one.type_id, spv::StorageClass(words[3])}); break;
       default:
-        // What defines an id without a type is a type, a label, a group of decorations or a name of an extension.
+        // An instruction with an id and without a type declares a type, a label, a group of decorations or an
+        // extension.
         if (one.result_id != 0 && one.type_id == 0) {
           SpirvType &type = types[one.result_id];
           type.op = spv::Op(one.opcode);
@@ -206,7 +207,7 @@ class SpirvReader {
     return id;
   }
 
-  /** The name of a scalar, and what begins the names of its vectors. */
+  /** The name of a scalar, and the prefix of the names of its vectors. */
   std::pair<std::string, std::string> scalar_name(std::uint32_t id) const
   {
     const SpirvType &type = module_.type(id);

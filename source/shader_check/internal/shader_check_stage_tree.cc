@@ -150,7 +150,7 @@ void add_members(const TType &type, const std::string &prefix, const std::string
   }
 }
 
-/** Sets what an input or output of \a type takes. */
+/** Sets the locations that an input or output of \a type takes. */
 void set_locations(Declaration &declaration, const TType &type, bool is_arrayed, EShLanguage language)
 {
   const glslang::TQualifier &qualifier = type.getQualifier();

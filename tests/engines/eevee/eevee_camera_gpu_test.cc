@@ -246,7 +246,7 @@ TEST_F(CameraGpuTest, AMovingPictureIsTheMeanOfItsSamples)
     EXPECT_LT(places[std::size_t(i)], double(i + 1) / count);
   }
 
-  // What stands still is drawn as without a shutter, and the next picture begins anew.
+  // Objects that stand still are drawn as without a shutter, and the next picture begins anew.
   const scene::PlacedCamera still = pose(0.5);
   renderer.draw_moving([&](double) { return still; });
   const std::vector<glm::vec4> standing = renderer.read_picture();
