@@ -72,7 +72,7 @@ void main()
 })");
 };
 
-constexpr glm::ivec2 size_px{6, 4};
+constexpr glm::ivec2 image_size_px{6, 4};
 /** The host's colour before draws. */
 constexpr std::array<float, 4> before = {0.2F, 0.4F, 0.6F, 0.8F};
 constexpr Texel before_bytes = {51, 102, 153, 204};
@@ -87,21 +87,21 @@ TEST_F(VulkanHostGpu, DrawsIntoARectangleInEitherOrderOfRowsAndKeepsTheRest)
 {
   const auto device = make_device();
   const Picture picture(*device);
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
   for (const RowOrder rows : {RowOrder::TopFirst, RowOrder::BottomFirst}) {
     const Framebuffer framebuffer =
-        device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px, 1, rows});
+        device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px, 1, rows});
     host->clear(image, before);
     device->begin_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     const Rectangle rectangle{{1, 0}, {3, 2}};
     device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load, .scissor = rectangle}));
     device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     const std::vector<Texel> texels = host->read(image);
-    for (int row = 0; row < size_px.y; row++) {
-      for (int x = 0; x < size_px.x; x++) {
-        const int y = rows == RowOrder::TopFirst ? size_px.y - 1 - row : row;
+    for (int row = 0; row < image_size_px.y; row++) {
+      for (int x = 0; x < image_size_px.x; x++) {
+        const int y = rows == RowOrder::TopFirst ? image_size_px.y - 1 - row : row;
         const bool is_inside = x >= 1 && x < 4 && y < 2;
-        EXPECT_EQ(texels[std::size_t(row * size_px.x + x)], is_inside ? drawn(x, y) : before_bytes)
+        EXPECT_EQ(texels[std::size_t(row * image_size_px.x + x)], is_inside ? drawn(x, y) : before_bytes)
             << x << ' ' << y << (rows == RowOrder::TopFirst ? " from the top" : "");
       }
     }
@@ -114,8 +114,8 @@ TEST_F(VulkanHostGpu, FormatsHaveTheirOrderOfChannelsAndTheirEncoding)
   const auto device = make_device();
   for (const bool is_srgb : {false, true}) {
     const VkFormat format = is_srgb ? VK_FORMAT_B8G8R8A8_SRGB : VK_FORMAT_B8G8R8A8_UNORM;
-    const VulkanTestHost::Image image = host->make_image(format, size_px.x, size_px.y);
-    const Framebuffer framebuffer = device->create_framebuffer("theirs", HostImage{image.image, format, size_px});
+    const VulkanTestHost::Image image = host->make_image(format, image_size_px.x, image_size_px.y);
+    const Framebuffer framebuffer = device->create_framebuffer("theirs", HostImage{image.image, format, image_size_px});
     device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
     CommandList list;
     list.begin_pass("clear", framebuffer, {.clear_color = {1, 0.5F, 0, 1}, .is_srgb_encoded = is_srgb});
@@ -137,10 +137,10 @@ TEST_F(VulkanHostGpu, EachSampleOfAnImageIsDrawn)
   const auto device = make_device();
   const Picture picture(*device);
   const VulkanTestHost::Image image =
-      host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y, VK_SAMPLE_COUNT_4_BIT);
-  const VulkanTestHost::Image resolved = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+      host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y, VK_SAMPLE_COUNT_4_BIT);
+  const VulkanTestHost::Image resolved = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
   const Framebuffer framebuffer = device->create_framebuffer(
-      "theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px, 4, RowOrder::BottomFirst});
+      "theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px, 4, RowOrder::BottomFirst});
   device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
   device->submit(picture.list(framebuffer, {}));
   device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
@@ -148,16 +148,16 @@ TEST_F(VulkanHostGpu, EachSampleOfAnImageIsDrawn)
   host->submit([&](VkCommandBuffer commands) {
     VkImageResolve region{};
     region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.extent = {std::uint32_t(size_px.x), std::uint32_t(size_px.y), 1};
+    region.extent = {std::uint32_t(image_size_px.x), std::uint32_t(image_size_px.y), 1};
     host->of_device<PFN_vkCmdResolveImage>("vkCmdResolveImage")(commands, image.image,
                                                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, resolved.image,
                                                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     host->change_layout(commands, resolved, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   });
   const std::vector<Texel> texels = host->read(resolved);
-  for (int y = 0; y < size_px.y; y++) {
-    for (int x = 0; x < size_px.x; x++) {
-      EXPECT_EQ(texels[std::size_t(y * size_px.x + x)], drawn(x, y));
+  for (int y = 0; y < image_size_px.y; y++) {
+    for (int x = 0; x < image_size_px.x; x++) {
+      EXPECT_EQ(texels[std::size_t(y * image_size_px.x + x)], drawn(x, y));
     }
   }
   host->destroy(resolved);
@@ -169,9 +169,9 @@ TEST_F(VulkanHostGpu, WaitsForAndSignalsTheSemaphoresOfEachFrame)
 {
   const auto device = make_device();
   const Picture picture(*device);
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
   const Framebuffer framebuffer =
-      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px});
   const VkSemaphore acquired = host->make_semaphore(false);
   const VkSemaphore binary = host->make_semaphore(false);
   const VkSemaphore timeline = host->make_semaphore(true);
@@ -189,7 +189,7 @@ TEST_F(VulkanHostGpu, WaitsForAndSignalsTheSemaphoresOfEachFrame)
     }
     device->submit(packet);
     const std::vector<Texel> texels = host->read(image, done);
-    EXPECT_EQ(texels[std::size_t(3 * size_px.x)], drawn(0, 0));
+    EXPECT_EQ(texels[std::size_t(3 * image_size_px.x)], drawn(0, 0));
     EXPECT_EQ(texels[5], drawn(5, 3));
     EXPECT_EQ(texels[0], before_bytes);
   }
@@ -216,10 +216,10 @@ TEST_F(VulkanHostGpu, AnotherThreadMayUseTheQueueUnderItsLock)
   handles.unlock_queue = [&] { queue_mutex.unlock(); };
   const auto device = make_device(handles);
   const Picture picture(*device);
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
-  const VulkanTestHost::Image other = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
+  const VulkanTestHost::Image other = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
   const Framebuffer framebuffer =
-      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px});
   std::atomic<bool> is_done = false;
   std::atomic<int> cleared = 0;
   std::thread thread([&] {
@@ -239,20 +239,20 @@ TEST_F(VulkanHostGpu, AnotherThreadMayUseTheQueueUnderItsLock)
   is_done = true;
   thread.join();
   EXPECT_GE(locks, frame_count);
-  EXPECT_EQ(host->read(image)[std::size_t(3 * size_px.x + 2)], drawn(2, 0));
+  EXPECT_EQ(host->read(image)[std::size_t(3 * image_size_px.x + 2)], drawn(2, 0));
   host->destroy(other);
   host->destroy(image);
 }
 
 TEST_F(VulkanHostGpu, DevicesStandBesideEachOtherAndTheHostsRemainsAfterThem)
 {
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
   {
     const auto first = make_device();
     const auto second = make_device();
     for (Device *device : {first.get(), second.get(), first.get()}) {
       const Framebuffer framebuffer =
-          device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+          device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px});
       device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
       device->submit(Picture(*device).list(framebuffer, {}));
       device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
@@ -275,8 +275,8 @@ TEST_F(VulkanHostGpu, ALostDeviceIsAnErrorUntilTheHostMakesAnother)
   made->vk.vkQueueSubmit2 = &lose;
   auto device =
       std::make_unique<VulkanDevice>(std::move(made), VulkanDeviceDesc{.compile_spirv = shader_check::compile_spirv});
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
-  const HostImage theirs{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px};
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
+  const HostImage theirs{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px};
   {
     const Framebuffer framebuffer = device->create_framebuffer("theirs", theirs);
     device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
@@ -299,8 +299,8 @@ TEST_F(VulkanHostGpu, ImagesAreRefusedByNameAndTheDeviceRemainsUsable)
 {
   const auto device = make_device();
   const Picture picture(*device);
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_SRGB, size_px.x, size_px.y);
-  const HostImage good{image.image, VK_FORMAT_R8G8B8A8_SRGB, size_px, 1, RowOrder::BottomFirst};
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_SRGB, image_size_px.x, image_size_px.y);
+  const HostImage good{image.image, VK_FORMAT_R8G8B8A8_SRGB, image_size_px, 1, RowOrder::BottomFirst};
   const auto refused = [&](auto &&change, std::string_view part) {
     HostImage changed = good;
     change(changed);
@@ -373,9 +373,9 @@ TEST_F(VulkanHostGpu, AnImageHasNoDepthAndIsDrawnIntoAfterTheError)
 {
   const auto device = make_device();
   const Picture picture(*device);
-  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, size_px.x, size_px.y);
+  const VulkanTestHost::Image image = host->make_image(VK_FORMAT_R8G8B8A8_UNORM, image_size_px.x, image_size_px.y);
   const Framebuffer framebuffer =
-      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, size_px});
+      device->create_framebuffer("theirs", HostImage{image.image, VK_FORMAT_R8G8B8A8_UNORM, image_size_px});
   for (const State state : {State::DepthNearerEqual, State::DepthLessEqual, State::WriteDepth}) {
     device->begin_image(framebuffer, VK_IMAGE_LAYOUT_UNDEFINED);
     CommandList list;
@@ -386,9 +386,10 @@ TEST_F(VulkanHostGpu, AnImageHasNoDepthAndIsDrawnIntoAfterTheError)
     device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load}));
     device->end_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     const std::vector<Texel> texels = host->read(image);
-    for (int row = 0; row < size_px.y; row++) {
-      for (int x = 0; x < size_px.x; x++) {
-        EXPECT_EQ(texels[std::size_t(row * size_px.x + x)], drawn(x, size_px.y - 1 - row)) << x << ' ' << row;
+    for (int row = 0; row < image_size_px.y; row++) {
+      for (int x = 0; x < image_size_px.x; x++) {
+        EXPECT_EQ(texels[std::size_t(row * image_size_px.x + x)], drawn(x, image_size_px.y - 1 - row))
+            << x << ' ' << row;
       }
     }
   }
