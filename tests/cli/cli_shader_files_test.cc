@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -155,9 +156,7 @@ TEST(Workers, TheLimitIsOfCpuTime)
           std::this_thread::sleep_for(std::chrono::milliseconds(600));
           return std::string("done");
         }
-        volatile int turn = 0;
-        while (true) {
-          turn = 1;
+        for (std::atomic<int> turns = 0;; turns++) {
         }
       },
       [](std::size_t) {});
