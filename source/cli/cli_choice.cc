@@ -5,6 +5,8 @@
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 
+#include "output_file.hh"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -51,6 +53,9 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
 std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device) const
 {
   const fs::path path = fs::path(options_.report_folder) / "report.json";
+  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
+  }
   std::ifstream file(path);
   if (!file) {
     throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));

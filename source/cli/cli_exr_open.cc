@@ -5,6 +5,8 @@
 
 #include "cli_exr_part.hh"
 
+#include "output_file.hh"
+
 #include <ImfChannelList.h>
 #include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
@@ -194,6 +196,9 @@ glm::ivec2 size_of_window(const Imath::Box2i &window)
 
 ExrInput::ExrInput(const fs::path &path) : path_(path)
 {
+  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
+    throw std::runtime_error(std::string(reason));
+  }
   std::error_code error;
   file_bytes_ = fs::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);

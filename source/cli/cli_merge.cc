@@ -226,6 +226,21 @@ class Merger {
   std::vector<double> shares_;
 };
 
+/** Names the devices if the parts were drawn by several, which differ in the last bits. */
+void warn_of_devices(const std::vector<std::string> &paths, const std::vector<ExrPart> &headers)
+{
+  const std::string first = metadata_value(headers.front().metadata, "gnomon:device");
+  for (std::size_t i = 1; i < headers.size(); i++) {
+    const std::string device = metadata_value(headers[i].metadata, "gnomon:device");
+    if (device != first) {
+      print_message(
+          "gnomon: warning: the parts were drawn by several devices, whose pixels may differ: {} by '{}', {} by '{}'\n",
+          paths.front(), first, paths[i], device);
+      return;
+    }
+  }
+}
+
 /**
  * The picture of \a paths. \throws std::runtime_error if they are not all parts of one picture, each once
  */
@@ -242,6 +257,7 @@ ExrPart merge_parts(const std::vector<std::string> &paths)
     }
     pixel_count += std::int64_t(headers[i].size_px.x) * headers[i].size_px.y;
   }
+  warn_of_devices(paths, headers);
   const ExrPart &first = headers.front();
   if (pixel_count < std::int64_t(first.whole_size_px.x) * first.whole_size_px.y) {
     throw std::runtime_error(fmt::format("the parts have {} pixels, and the picture has {}x{}: a part is missing",

@@ -100,9 +100,8 @@ static Picture read_radiance_picture(const Bytes &file)
 
 static Picture read_any_picture(const fs::path &path, const std::string &layer)
 {
-  // A folder opens as a file, and says that it has 2^63 bytes.
-  if (std::error_code ignored; fs::is_directory(path, ignored)) {
-    throw std::runtime_error("is a folder");
+  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
+    throw std::runtime_error(std::string(reason));
   }
   if (std::optional<Picture> picture = read_exr_picture(path, layer)) {
     return std::move(*picture);

@@ -17,16 +17,48 @@ struct Ending {
   std::size_t size;
 };
 
+struct OtherEnding {
+  shader_check::Stage stage;
+  std::string_view ending;
+};
+
+/** Endings that people use beside StageName::ending. */
+constexpr std::array<OtherEnding, 10> other_endings = {{
+    {shader_check::Stage::Vertex, "vs"},
+    {shader_check::Stage::Vertex, "vsh"},
+    {shader_check::Stage::TessControl, "tcs"},
+    {shader_check::Stage::TessEvaluation, "tes"},
+    {shader_check::Stage::Geometry, "gs"},
+    {shader_check::Stage::Geometry, "gsh"},
+    {shader_check::Stage::Fragment, "fs"},
+    {shader_check::Stage::Fragment, "fsh"},
+    {shader_check::Stage::Compute, "cs"},
+    {shader_check::Stage::Compute, "csh"},
+}};
+
 /** The ways in which a file's name ends in its stage. */
-std::array<std::string, 3> endings_of(std::string_view stage)
+std::vector<std::string> endings_of(const shader_check::StageName &stage)
 {
-  return {fmt::format(".{}", stage), fmt::format(".{}.glsl", stage), fmt::format("_{}.glsl", stage)};
+  std::vector<std::string> endings;
+  const auto add = [&](std::string_view word) {
+    for (const std::string &ending :
+         {fmt::format(".{}", word), fmt::format(".{}.glsl", word), fmt::format("_{}.glsl", word)}) {
+      endings.push_back(ending);
+    }
+  };
+  add(stage.ending);
+  for (const OtherEnding &other : other_endings) {
+    if (other.stage == stage.stage) {
+      add(other.ending);
+    }
+  }
+  return endings;
 }
 
 std::optional<Ending> ending_of(std::string_view path)
 {
   for (const shader_check::StageName &stage : shader_check::stage_names()) {
-    for (const std::string &ending : endings_of(stage.ending)) {
+    for (const std::string &ending : endings_of(stage)) {
       if (path.ends_with(ending)) {
         return Ending{stage.stage, ending.size()};
       }
@@ -92,7 +124,7 @@ static void add_stages_between(shader_check::Program &program)
         })) {
       continue;
     }
-    const auto endings = endings_of(stage.ending);
+    const std::vector<std::string> endings = endings_of(stage);
     const auto ending =
         std::ranges::find_if(endings, [&](const std::string &end) { return fs::is_regular_file(program.name + end); });
     if (ending != endings.end()) {
@@ -135,6 +167,9 @@ std::string unknown_stage(const std::string &file)
   std::string endings;
   for (const shader_check::StageName &stage : shader_check::stage_names()) {
     endings += fmt::format(".{}, ", stage.ending);
+  }
+  for (const OtherEnding &other : other_endings) {
+    endings += fmt::format(".{}, ", other.ending);
   }
   return fmt::format(
       "its name ends in none of {}each also as .vert.glsl and _vert.glsl, .surface.glsl, _surface.glsl; "

@@ -3,6 +3,8 @@
 
 #include "cli_shader_files.hh"
 
+#include "output_file.hh"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -40,10 +42,14 @@ class ManifestValue {
   {
     return !value_.is_null();
   }
+  bool is_object() const
+  {
+    return value_.is_object();
+  }
   /** Call it before at(). */
   void require_object() const
   {
-    if (!value_.is_object()) {
+    if (!is_object()) {
       fail("an object is needed");
     }
   }
@@ -177,20 +183,50 @@ std::vector<std::vector<std::string>> permutations_in(const ManifestValue &value
   return all;
 }
 
+/** \a path without parts that change nothing. Behind a link to a folder, `..` is not the folder before it. */
+std::string plain(const fs::path &path)
+{
+  const fs::path shorter = path.lexically_normal();
+  std::error_code error;
+  return (fs::exists(path, error) && !fs::equivalent(path, shorter, error) ? path : shorter).string();
+}
+
+/** A path, or an object of a path and its stage. */
+shader_check::Program::File file_in(ManifestValue &value, const fs::path &folder)
+{
+  if (!value.is_object()) {
+    const std::string path = plain(folder / value.text());
+    const std::optional<shader_check::Stage> stage = stage_of(path);
+    if (!stage) {
+      value.fail("its name gives no stage; {\"path\": …, \"stage\": …} names one");
+    }
+    return {*stage, path};
+  }
+  const std::string path = plain(folder / value.at("path").text());
+  const ManifestValue named = value.at("stage");
+  value.require_known_keys();
+  const auto stage = std::ranges::find(shader_check::stage_names(), named.text(), &shader_check::StageName::ending);
+  if (stage == shader_check::stage_names().end()) {
+    std::vector<std::string_view> names;
+    std::ranges::transform(shader_check::stage_names(), std::back_inserter(names), &shader_check::StageName::ending);
+    named.fail(fmt::format("'{}' is no stage; there are {}", named.text(), fmt::join(names, ", ")));
+  }
+  return {stage->stage, path};
+}
+
 shader_check::Program program_in(ManifestValue &value, const fs::path &folder)
 {
   shader_check::Program program;
   const ManifestValue files = value.at("files");
-  for (const ManifestValue &file : files.list()) {
-    const fs::path path = (folder / file.text()).lexically_normal();
-    const std::optional<shader_check::Stage> stage = stage_of(path);
-    if (!stage) {
-      file.fail("its name gives no stage");
+  for (ManifestValue &value : files.list()) {
+    shader_check::Program::File file = file_in(value, folder);
+    if (std::ranges::find(program.files, file.stage, &shader_check::Program::File::stage) != program.files.end()) {
+      value.fail(
+          fmt::format("the program has two files of the {} stage. It may have one of each: shaders of one stage "
+                      "that OpenGL links are checked one by one, each as a program of its own",
+                      to_string(file.stage)));
     }
-    if (std::ranges::find(program.files, *stage, &shader_check::Program::File::stage) != program.files.end()) {
-      file.fail(fmt::format("the program has two files of the {} stage", to_string(*stage)));
-    }
-    program.files.push_back({*stage, path.string()});
+    program.files.push_back(std::move(file));
   }
   if (program.files.empty()) {
     files.fail("at least one file is needed");
@@ -207,7 +243,7 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
   root.require_object();
   static_cast<void>(root.at("$schema"));
   for (const std::string &include : root.at("include_folders").texts()) {
-    manifest.include_folders.push_back((folder / include).lexically_normal().string());
+    manifest.include_folders.push_back(plain(folder / include));
   }
   manifest.levels = root.at("levels").texts();
   manifest.features = features_in(root.at("features"));
@@ -242,8 +278,11 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
 
 ShaderManifest read_shader_manifest(const fs::path &path)
 {
+  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
+  }
   std::ifstream stream(path);
-  if (!stream || fs::is_directory(path)) {
+  if (!stream) {
     throw std::runtime_error(fmt::format("{}: the file cannot be read", path.string()));
   }
   try {

@@ -545,7 +545,7 @@ void add_shaders_check(CLI::App &shaders, Status &status)
   command->add_option("--feature", a->features, "A feature of devices that FILES may assume, such as scalarBlockLayout")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(std::vector<std::string>(features.begin(), features.end())));
-  command->add_option("--time-limit", a->time_limit, "Seconds for each program and target")
+  command->add_option("--time-limit", a->time_limit, "Seconds of CPU time for each program and target")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_option("--manifest", a->manifest, "File of programs, permutations and targets, in place of FILES");

@@ -107,6 +107,7 @@ nlohmann::json to_json(const NamedInterface &program)
           {"target", to_string(program.interface.target)},
           {"stages", names_of(program.interface.stages)},
           {"bindings", std::move(bindings)},
+          {"uniforms", to_json(program.interface.uniforms)},
           {"inputs", to_json(program.interface.inputs)},
           {"outputs", to_json(program.interface.outputs)}};
 }
@@ -143,6 +144,7 @@ void print_text(const NamedInterface &program)
   fmt::print(": {} for {}\n", fmt::join(names_of(program.interface.stages), ", "), to_string(program.interface.target));
   print_variables("input", program.interface.inputs);
   print_variables("output", program.interface.outputs);
+  print_variables("uniform", program.interface.uniforms);
   std::ranges::for_each(program.interface.bindings, print_binding);
 }
 

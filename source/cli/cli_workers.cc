@@ -15,6 +15,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -93,6 +94,20 @@ bool send_all(int socket, const void *data, std::size_t size)
   _exit(0);
 }
 
+/** CPU time of a process; 0 if it has ended. */
+double cpu_seconds(pid_t process)
+{
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0) {
+    return 0.0;
+  }
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+
+/** A job without CPU time, which waits for something, ends after this many times its limit. */
+constexpr double wall_factor = 20.0;
+
 /** A process and the job that it runs. */
 class Worker {
  public:
@@ -124,7 +139,10 @@ class Worker {
       : process_(std::exchange(other.process_, -1)),
         socket_(std::exchange(other.socket_, -1)),
         job_(other.job_),
+        seconds_(other.seconds_),
+        cpu_start_(other.cpu_start_),
         deadline_(other.deadline_),
+        next_look_(other.next_look_),
         answer_(std::move(other.answer_))
   {
   }
@@ -133,7 +151,10 @@ class Worker {
     std::swap(process_, other.process_);
     std::swap(socket_, other.socket_);
     std::swap(job_, other.job_);
+    std::swap(seconds_, other.seconds_);
+    std::swap(cpu_start_, other.cpu_start_);
     std::swap(deadline_, other.deadline_);
+    std::swap(next_look_, other.next_look_);
     std::swap(answer_, other.answer_);
     return *this;
   }
@@ -150,15 +171,27 @@ class Worker {
   {
     return job_;
   }
-  Clock::time_point deadline() const
+  /** When is_late() may next be true. */
+  Clock::time_point next_look() const
   {
-    return deadline_;
+    return next_look_;
+  }
+  /** Whether the job has used its time. */
+  bool is_late()
+  {
+    const Clock::time_point now = Clock::now();
+    const double left = seconds_ - (cpu_seconds(process_) - cpu_start_);
+    next_look_ = std::min(deadline_, now + duration(left));
+    return left <= 0.0 || now >= deadline_;
   }
   void start(std::size_t job, double seconds)
   {
     job_ = job;
     answer_.clear();
-    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    seconds_ = seconds;
+    cpu_start_ = cpu_seconds(process_);
+    deadline_ = Clock::now() + duration(wall_factor * seconds);
+    next_look_ = Clock::now() + duration(seconds);
     const std::uint64_t index = job;
     // A failure shows when the answer is read.
     send_all(socket_, &index, sizeof(index));
@@ -208,6 +241,11 @@ class Worker {
   }
 
  private:
+  static Clock::duration duration(double seconds)
+  {
+    constexpr double seconds_max = 1e8;
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, seconds_max)));
+  }
   /** Waits for the end of a process that ends. \return how it did */
   std::string reap()
   {
@@ -224,7 +262,10 @@ class Worker {
   pid_t process_ = -1;
   int socket_ = -1;
   std::optional<std::size_t> job_;
+  double seconds_ = 0.0;
+  double cpu_start_ = 0.0;
   Clock::time_point deadline_;
+  Clock::time_point next_look_;
   std::string answer_;
 };
 
@@ -269,7 +310,7 @@ std::vector<WorkResult> run_in_workers(std::size_t count, const WorkLimits &limi
     Clock::time_point first = Clock::time_point::max();
     for (const Worker &worker : workers) {
       polled.push_back({worker.job() ? worker.socket() : -1, POLLIN, 0});
-      first = worker.job() ? std::min(first, worker.deadline()) : first;
+      first = worker.job() ? std::min(first, worker.next_look()) : first;
     }
     const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(first - Clock::now()).count();
     poll(polled.data(), nfds_t(polled.size()), int(std::clamp<long long>(wait + 1, 0, 60'000)));
@@ -283,7 +324,7 @@ std::vector<WorkResult> run_in_workers(std::size_t count, const WorkLimits &limi
           finish(worker, std::move(*result));
         }
       }
-      else if (Clock::now() >= worker.deadline()) {
+      else if (Clock::now() >= worker.next_look() && worker.is_late()) {
         worker.stop();
         finish(worker, {"", fmt::format("takes more than {} s, the limit of --time-limit", limits.seconds)});
       }

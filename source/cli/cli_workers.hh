@@ -10,7 +10,7 @@
 namespace gnomon::cli {
 
 struct WorkLimits {
-  /** Most wall time for one job. */
+  /** Most CPU time for one job, so that a busy machine fails none. It may wait 20 times as long. */
   double seconds = 60.0;
   /** Most memory that a process may write. */
   std::size_t memory_bytes = std::size_t(3) << 30U;

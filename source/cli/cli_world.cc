@@ -112,15 +112,10 @@ void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOpti
 
 scene::Scene import_scene(const std::string &path, const WorldOptions &world, const gltf::ImportOptions &options)
 {
-  try {
-    const std::string layer = world.world.empty() ? world.layer : "";
-    gltf::ImportOptions all = options;
-    all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, layer); };
-    return gltf::import_gltf(path, all);
-  }
-  catch (const gltf::UnknownVariant &unknown) {
-    throw UsageError(unknown.what());
-  }
+  const std::string layer = world.world.empty() ? world.layer : "";
+  gltf::ImportOptions all = options;
+  all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, layer); };
+  return gltf::import_gltf(path, all);
 }
 
 std::string world_text(const scene::World &world)

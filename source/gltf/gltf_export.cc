@@ -4,6 +4,7 @@
 #include "image_base64.hh"
 #include "internal/gltf_camera.hh"
 #include "internal/gltf_extra.hh"
+#include "internal/gltf_file.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_write_animation.hh"
@@ -433,6 +434,18 @@ void export_gltf(const Scene &scene, const std::filesystem::path &path)
   }
   catch (const std::bad_alloc &) {
     throw failed("there is not enough memory for it");
+  }
+}
+
+std::string left_out_of_export(const std::filesystem::path &path)
+{
+  try {
+    Warnings ignored;
+    const std::size_t count = load_file(path, {}, ignored).model.variants.size();
+    return count == 0 ? "" : std::to_string(count) + (count == 1 ? " variant" : " variants") + " of materials";
+  }
+  catch (const std::exception &) {
+    return "";
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 
 namespace gnomon::gltf {
 
@@ -36,5 +37,11 @@ struct ExportError : std::runtime_error {
  * encoded, or the file cannot be written.
  */
 void export_gltf(const scene::Scene &scene, const std::filesystem::path &path);
+
+/**
+ * What the file at \a path has and export_gltf() does not write of a scene that was read from it, such as
+ * "2 variants of materials"; empty: nothing is known, or the file is not there or not glTF.
+ */
+[[nodiscard]] std::string left_out_of_export(const std::filesystem::path &path);
 
 }  // namespace gnomon::gltf

@@ -540,4 +540,13 @@ std::optional<FileId> file_id(const fs::path &path)
   return FileId{folder.st_dev, folder.st_ino, place.path.filename().string()};
 }
 
+std::string_view unreadable(const fs::path &path)
+{
+  Place place;
+  if (find_place(path, place) != 0 || !place.status || place.descriptor >= 0 || S_ISREG(place.status->st_mode)) {
+    return {};
+  }
+  return S_ISDIR(place.status->st_mode) ? "is a folder" : "is no regular file";
+}
+
 }  // namespace gnomon::output

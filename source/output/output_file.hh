@@ -33,6 +33,13 @@ struct TransientError : Error {
   using Error::Error;
 };
 
+/**
+ * Why \a path is not opened to be read: "is a folder" or "is no regular file", since opening a pipe or a device may
+ * never end. Empty for all others, also where there is no file, and for descriptors of the process, such as
+ * `/dev/stdin` and what a shell writes for `<(…)`.
+ */
+[[nodiscard]] std::string_view unreadable(const std::filesystem::path &path);
+
 /** Content that is being written. Positions count bytes from 0. */
 class Stream {
  public:

@@ -114,10 +114,11 @@ constexpr int uniform_block_bytes_limit = 65536;
 
 using Reads = CheckRule::Reads;
 
-constexpr std::array<CheckRule, 19> rules = {{
+constexpr std::array<CheckRule, 20> rules = {{
     {"stage", "the name of a file, or an option, gives its stage"},
     {"include", "included files and the files of stages exist"},
     {"compile", "glslang accepts the stage"},
+    {"compile-warning", "glslang has no warning about the stage", true},
     {"link", "glslang accepts the stages together"},
     {"limit", "the check of a program ends within its limits of time and memory"},
     {"spirv", "SPIRV-Tools accepts glslang's output for the stage", true},
@@ -179,7 +180,8 @@ class Checker {
       return;
     }
     for (const CompileMessage &message : compile_messages(c_.glslang.log(), added)) {
-      add(message.severity, message.rule, stage, message.position, message.text);
+      const bool is_warning = message.severity == Severity::Warning && message.rule == "compile";
+      add(message.severity, is_warning ? "compile-warning" : message.rule, stage, message.position, message.text);
     }
     if (!is_compiled && !has_errors()) {
       add(Severity::Error, "compile", stage, {}, std::string(c_.glslang.log()));

@@ -59,6 +59,11 @@ struct ProgramInterface {
   /** Inputs of the first stage and outputs of the last, both sorted by location. */
   std::vector<StageVariable> inputs;
   std::vector<StageVariable> outputs;
+  /**
+   * Those outside of blocks that a stage uses, sorted by location. Only OpenGL has them. Of structs each member, such
+   * as `lights[0].color`; of an array of structs, the first element stands for all.
+   */
+  std::vector<StageVariable> uniforms;
   /** Those that a stage uses, sorted by kind, set, slot and name. */
   std::vector<ProgramBinding> bindings;
 };

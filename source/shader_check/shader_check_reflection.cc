@@ -317,12 +317,19 @@ ProgramInterface interface_of(Compilation &compilation, CheckTarget target)
     add_bindings(facts.uniform_blocks, ProgramBinding::Kind::UniformBlock, stage, result.bindings);
     add_bindings(facts.storage_blocks, ProgramBinding::Kind::StorageBlock, stage, result.bindings);
     add_bindings(facts.textures, ProgramBinding::Kind::Texture, stage, result.bindings);
+    for (const Declaration &uniform : facts.uniforms) {
+      if (uniform.is_used &&
+          std::ranges::find(result.uniforms, uniform.name, &StageVariable::name) == result.uniforms.end()) {
+        result.uniforms.push_back({uniform.name, type_name(uniform.type), uniform.location});
+      }
+    }
     if (i == 0) {
       const bool is_arrayed = stage == Stage::Geometry || stage == Stage::TessControl || stage == Stage::TessEvaluation;
       result.inputs = variables(facts.inputs, is_arrayed);
     }
   }
   result.outputs = variables(facts.outputs, false);
+  std::ranges::stable_sort(result.uniforms, {}, &StageVariable::location);
   for (ProgramBinding &binding : result.bindings) {
     const bool is_uniform =
         binding.kind == ProgramBinding::Kind::UniformBlock || binding.kind == ProgramBinding::Kind::PushConstants;

@@ -85,8 +85,8 @@ std::string App::rescue()
   }
   const std::string path = default_path(".rescued.glb");
   try {
-    document_->save(path);
-    return fmt::format("The scene is saved as {}. ", path);
+    const std::string left_out = document_->save(path);
+    return fmt::format("The scene is saved as {}{}. ", path, left_out.empty() ? "" : ", without its " + left_out);
   }
   catch (const std::exception &error) {
     return fmt::format("The scene is not saved: {}. ", error.what());
@@ -242,8 +242,8 @@ bool App::save(const std::filesystem::path &path)
     return false;
   }
   try {
-    document_->save(path);
-    message(fmt::format("{} is written", path.string()), false);
+    const std::string left_out = document_->save(path);
+    message(fmt::format("{} is written{}", path.string(), left_out.empty() ? "" : ", without its " + left_out), false);
     return true;
   }
   catch (const std::exception &error) {

@@ -68,13 +68,15 @@ scene::Scene Document::completed(scene::Scene scene)
   return scene;
 }
 
-void Document::save(const std::filesystem::path &path)
+std::string Document::save(const std::filesystem::path &path)
 {
   // Otherwise the end of the transform would be an unsaved edit.
   end_transform(true);
+  std::string left_out = gltf::left_out_of_export(scene_.path);
   gltf::export_gltf(scene_, path);
   scene_.path = path.string();
   saved_revision_ = scene_.revision();
+  return left_out;
 }
 
 draw::Engine &Document::engine(const std::string &name)

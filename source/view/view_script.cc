@@ -3,6 +3,8 @@
 
 #include "view_commands.hh"
 
+#include "output_file.hh"
+
 #include <fmt/format.h>
 
 #include <fstream>
@@ -23,6 +25,9 @@ namespace {
 
 Script::Script(const std::filesystem::path &path) : path_(path)
 {
+  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
+  }
   std::ifstream file(path);
   std::ostringstream text;
   // An empty file is an empty script, but the operator counts no characters as a failure.

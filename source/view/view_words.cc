@@ -10,6 +10,9 @@ namespace gnomon::view {
 std::vector<ScriptLine> parse_script(std::string_view text)
 {
   std::vector<ScriptLine> lines;
+  // Editors of Windows begin UTF-8 with a byte-order mark.
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  text.remove_prefix(text.starts_with(mark) ? mark.size() : 0);
   std::istringstream input{std::string(text)};
   std::string line;
   for (int number = 1; std::getline(input, line); number++) {

@@ -326,6 +326,25 @@ TEST_F(ExrPictureTest, APartWithoutAChecksumIsRead)
   EXPECT_EQ(part.channels.at("G"), std::vector<float>(8, 2.0F));
 }
 
+TEST_F(ExrPictureTest, PartsOfSeveralDevicesAreJoinedAndNamed)
+{
+  const auto write_half = [&](const std::string &name, int first_row, const std::string &device) {
+    cli::ExrPart part{{3, 4}, {3, 2}, {0, first_row}, {}, {{"gnomon:samples", "2"}, {"gnomon:device", device}}};
+    for (const char *channel : {"R", "G", "B", "A"}) {
+      part.channels[channel].assign(6, 0.5F);
+    }
+    cli::write_exr_part(folder / name, part);
+  };
+  write_half("a.exr", 0, "OpenGL");
+  for (const std::string device : {"OpenGL", "Vulkan"}) {
+    write_half("b.exr", 2, device);
+    const test::Finished merged = run("merge a.exr b.exr -o whole.exr");
+    EXPECT_EQ(merged.status, 0) << merged.err;
+    EXPECT_EQ(merged.err.find("a.exr by 'OpenGL', b.exr by 'Vulkan'") != std::string::npos, device == "Vulkan")
+        << merged.err;
+  }
+}
+
 TEST(WorldRadiances, AreClampedWithNumberAndPlace)
 {
   constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `gnomon shaders check FILES`: what the program adds to check_program: names of files, outputs, processes, the cache.
 #include "cli_process.hh"
+#include "cli_workers.hh"
 
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <chrono>
+#include <thread>
 
 namespace gnomon {
 namespace {
@@ -139,6 +142,59 @@ TEST_F(ShaderFilesTest, AProgramThatTakesTooLongIsEndedAndOthersAreChecked)
   EXPECT_NE(finished.out.find("[limit]"), std::string::npos) << finished.out;
   EXPECT_NE(finished.out.find("bad.frag:3: error: 'oops'"), std::string::npos) << finished.out;
   EXPECT_EQ(check("good.frag --time-limit 0").status, 2);
+}
+
+TEST(Workers, TheLimitIsOfCpuTime)
+{
+  cli::WorkLimits limits;
+  limits.seconds = 0.25;
+  const std::vector<cli::WorkResult> results = cli::run_in_workers(
+      2, limits,
+      [](std::size_t index) {
+        if (index == 0) {
+          // As on a machine that does other things.
+          std::this_thread::sleep_for(std::chrono::milliseconds(600));
+          return std::string("done");
+        }
+        for (std::atomic<int> turns = 0;; turns++) {
+        }
+      },
+      [](std::size_t) {});
+  EXPECT_EQ(results[0].bytes, "done") << results[0].failure;
+  EXPECT_EQ(results[1].failure, "takes more than 0.25 s, the limit of --time-limit");
+}
+
+TEST_F(ShaderFilesTest, OtherEndingsAndLinkedFoldersAreRead)
+{
+  const std::string vertex = "layout(location = 0) out vec3 n;\nvoid main() { n = vec3(1); gl_Position = vec4(0); }\n";
+  const std::string fragment = "layout(location = 0) in vec3 n;\nvoid main() { c = vec4(n, oops); }\n";
+  for (const auto &[first, second] :
+       {std::pair("p.vs", "p.fs"), {"p.vsh", "p.fsh"}, {"p_vs.glsl", "p_fs.glsl"}, {"p.vs.glsl", "p.frag"}}) {
+    write(first, "#version 450\n" + vertex);
+    write(second, fragment_head + fragment);
+    const Finished finished = check(std::string(first) + " " + second);
+    EXPECT_EQ(finished.out.find(std::string(second) + ":4: error: 'oops'"), 0U) << finished.out << finished.err;
+    EXPECT_NE(finished.out.find("1 programs, 1 variants"), std::string::npos) << finished.out;
+    write("m.json",
+          std::string(R"({"programs": [{"files": [")") + first + R"(", {"path": "any.glsl", "stage": "frag"}]}]})");
+    write("any.glsl", fragment_head + fragment);
+    EXPECT_EQ(check("--manifest m.json").out.find("any.glsl:4: error: 'oops'"), 0U);
+  }
+  for (const std::string name : {"x.gs", "x.gsh", "x.cs", "x.csh", "x.tcs", "x.tes"}) {
+    write(name, "oops\n");
+    EXPECT_EQ(check(name + " --target opengl").out.find(name + ":1: error: "), 0U) << name;
+  }
+  write_file("real/sub/a.glsl", "#include \"../b.glsl\"\n");
+  write_file("real/b.glsl", "float b() { return 1.0; }\n");
+  write_file("project/s.frag", fragment_head + "#include \"common/a.glsl\"\nvoid main() { c = vec4(b()); }\n");
+  std::filesystem::create_directory_symlink("../real/sub", folder / "project/common");
+  const Finished linked = check("project/s.frag");
+  EXPECT_EQ(linked.status, 0) << linked.out;
+  std::filesystem::create_directory_symlink("project", folder / "link");
+  write_file("real/sub/m.json", R"({"include_folders": ["../"], "programs": [{"files": ["../t.frag"]}]})");
+  write_file("real/t.frag", fragment_head + "#include <b.glsl>\nvoid main() { c = vec4(b()); }\n");
+  const Finished manifest = check("--manifest project/common/m.json");
+  EXPECT_EQ(manifest.status, 0) << manifest.out << manifest.err;
 }
 
 TEST_F(ShaderFilesTest, SpirvIsWritten)
@@ -342,7 +398,13 @@ TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
   wrong["programs"][0]["defines"] = {"1X=1"};
   rejected(wrong, "/programs/0/defines/0: NAME or NAME=VALUE is needed");
   wrong["programs"][0] = {{"files", {"lit.vert", "other.vert"}}};
-  rejected(wrong, "/programs/0/files/1: the program has two files of the vertex stage");
+  rejected(wrong, "/programs/0/files/1: the program has two files of the vertex stage. It may have one of each");
+  wrong["programs"][0] = {{"files", {{{"path", "any.glsl"}, {"stage", "vertex"}}}}};
+  rejected(wrong, "/programs/0/files/0/stage: 'vertex' is no stage; there are vert, ");
+  wrong["programs"][0] = {{"files", {{{"path", "any.glsl"}, {"stage", "vert"}, {"entry", "main"}}}}};
+  rejected(wrong, "/programs/0/files/0: 'entry' is unknown");
+  wrong["programs"][0] = {{"files", {"any.glsl"}}};
+  rejected(wrong, "/programs/0/files/0: its name gives no stage");
   std::vector<int> many(300);
   wrong["programs"][0] = {{"files", {"lit.vert"}}, {"permutations", {{"A", many}, {"B", many}}}};
   rejected(wrong, "/programs/0/permutations/B: the program has more than 65536 permutations");

@@ -499,6 +499,23 @@ TEST_F(ShadersTest, ReflectOfFilesReadsOpenGlAndNamesErrors)
   const Finished old = run("shaders reflect old.frag");
   EXPECT_EQ(old.status, 0) << old.err;
   EXPECT_NE(old.out.find("texture sampler2D 'image', set 0, slot"), std::string::npos) << old.out;
+  write("loose.vert",
+        "#version 330\nuniform mat4 view[2]; uniform float unused;\nvoid main() { gl_Position = view[1][0]; }\n");
+  write("loose.frag",
+        "#version 430\nstruct Lamp { vec3 color; float power[2]; };\nlayout(location = 4) uniform Lamp lamps[3];\n"
+        "layout(location = 20) uniform bool on; uniform mat4 view[2]; uniform struct { sampler2D map; int n; } m;\n"
+        "out vec4 c;\nvoid main() { c = on ? vec4(lamps[1].color, lamps[0].power[1]) : view[0][m.n] * "
+        "texture(m.map, vec2(0)); }\n");
+  const Finished loose = run("shaders reflect loose.vert loose.frag --format json");
+  ASSERT_EQ(loose.status, 0) << loose.err;
+  const auto uniform = [](const char *name, const char *type, int location) {
+    return nlohmann::json{{"name", name}, {"type", type}, {"location", location}};
+  };
+  EXPECT_EQ(nlohmann::json::parse(loose.out)[0]["uniforms"],
+            (nlohmann::json{uniform("view", "mat4x4[2]", -1), uniform("m.map", "sampler2D", -1),
+                            uniform("m.n", "int", -1), uniform("lamps[0].color", "vec3", 4),
+                            uniform("lamps[0].power", "float[2]", 5), uniform("on", "bool", 20)}));
+  EXPECT_NE(run("shaders reflect loose.vert").out.find("uniform mat4x4[2] 'view', location -1\n"), std::string::npos);
   write("bad.frag", "#version 450\nvoid main()\n{\n  x = 1;\n}\n");
   const Finished bad = run("shaders reflect bad.frag");
   EXPECT_EQ(bad.status, 1);

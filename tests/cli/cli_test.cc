@@ -14,6 +14,8 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -200,18 +202,45 @@ TEST_F(CliTest, AMissingFolderIsFoundBeforeTheWork)
   EXPECT_NE(finished.err.find("nowhere/out.png"), std::string::npos) << finished.err;
 }
 
-TEST_F(CliTest, UnknownCameraIsAnErrorThatListsTheCameras)
+TEST_F(CliTest, ANameThatAFileDoesNotHaveIsAnErrorThatListsThoseThatItHas)
 {
-  const Finished finished = run("render " + example("plaza") + " --backend null --camera side");
-  EXPECT_EQ(finished.status, 1);
-  EXPECT_NE(finished.err.find("no camera 'side'; it has: camera"), std::string::npos) << finished.err;
+  write("sky.hdr", "none is read");
+  const std::string plaza = example("plaza");
+  const std::string walk = GNOMON_SOURCE "/examples/scenes/walk.gltf";
+  for (const auto &[arguments, message] :
+       {std::pair(plaza + " --camera zz", "no camera 'zz'; it has: camera"),
+        {plaza + " --variant zz", "has no variant 'zz'; it has none"},
+        {walk + " --frames 0-1 --animation zz -o 'f_#.exr'", "no animation 'zz'; it has: "},
+        {plaza + " --world sky.hdr --world-layer zz", "sky.hdr: has no layer 'zz'"},
+        {plaza + " --debug shadow:zz:0", "no lamp 'zz'; lamps with a visible shadow: "}}) {
+    const Finished finished = run("render --backend null " + arguments);
+    EXPECT_EQ(finished.status, 1) << arguments;
+    EXPECT_NE(finished.err.find(message), std::string::npos) << arguments << finished.err;
+  }
 }
 
-TEST_F(CliTest, UnknownVariantIsWrongUsage)
+TEST_F(CliTest, APipeOrDeviceIsRefusedWhereAFileIsRead)
 {
-  const Finished finished = run("render " + example("plaza") + " --backend null --variant night");
-  EXPECT_EQ(finished.status, 2);
-  EXPECT_NE(finished.err.find("has no variant 'night'; it has none"), std::string::npos) << finished.err;
+  ASSERT_EQ(mkfifo((folder / "fifo").c_str(), 0666), 0);
+  std::filesystem::create_symlink("fifo", folder / "link");
+  write("empty.exr", "");
+  const std::string scene = example("plaza");
+  for (const std::string file : {"fifo", "link", "/dev/zero"}) {
+    for (const std::string &command :
+         std::vector<std::string>{"info " + scene + " --world @", "info @", "compare @ empty.exr", "merge @ -o out.exr",
+                                  "merge --plan @", "render --part @:0", "shaders check --manifest @"}) {
+      std::string arguments = command;
+      arguments.replace(arguments.find('@'), 1, file);
+      const Finished finished = run(arguments);
+      EXPECT_EQ(finished.status, 1) << arguments << finished.err;
+      EXPECT_NE(finished.err.find(file + ": "), std::string::npos) << arguments << finished.err;
+    }
+  }
+  // What a shell writes for `<(…)` is read.
+  write("piped.sh", "#!/bin/bash\nexec '" GNOMON_PROGRAM "' \"$@\" --manifest <(echo '{')\n");
+  std::filesystem::permissions(folder / "piped.sh", std::filesystem::perms::owner_all);
+  EXPECT_NE(run("shaders check", folder / "piped.sh").err.find("parse error"), std::string::npos);
+  EXPECT_NE(run("merge --plan .").err.find(".: not a plan: is a folder"), std::string::npos);
 }
 
 TEST_F(CliTest, InvalidDebugViewIsWrongUsage)

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <unistd.h>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -408,6 +409,19 @@ Scene full_scene()
 TEST(GltfExport, AllContentsOfASceneReadBack)
 {
   expect_round_trip(full_scene());
+}
+
+TEST(GltfExport, WhatIsNotWrittenIsSaid)
+{
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / fmt::format("variants{}.gltf", getpid());
+  const std::string variants =
+      R"("extensions": {"KHR_materials_variants": {"variants": [{"name": "a"}, {"name": "b"}]}})";
+  for (const auto &[members, text] : {std::pair(", " + variants, "2 variants of materials"), {std::string(), ""}}) {
+    std::ofstream(path) << R"({"asset": {"version": "2.0"})" << members << "}";
+    EXPECT_EQ(gltf::left_out_of_export(path), text);
+  }
+  std::filesystem::remove(path);
+  EXPECT_EQ(gltf::left_out_of_export(path), "");
 }
 
 TEST(GltfExport, AUniformWorldReadsBackAndIsTheOnlyLight)

@@ -251,6 +251,13 @@ TEST(GltfPointer, TheFirstValueOutOfRangeIsNamedOnce)
       warnings_of("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", {1, 1, 1}, "SCALAR"),
       Messages{});
   EXPECT_EQ(warnings_of("/cameras/0/perspective/yfov", {1, 4, 1}, "SCALAR").size(), 1U);
+  EXPECT_EQ(warnings_of("/materials/0/emissiveFactor", {1, 1, 1, 1, 1, 3, 0, 0, 0}, "VEC3"),
+            Messages{"animation 0: the 'emissiveFactor' of 'paint' is 3 at 1 s, clamped to 1"});
+  const std::string deep =
+      "/materials/0/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture/extensions/"
+      "KHR_texture_transform/texCoord";
+  EXPECT_EQ(warnings_of(deep, {0, 1, 0}, "SCALAR"),
+            Messages{"animation 0: channel left out: pointer: '" + deep + "' is not played"});
 }
 
 TEST(GltfPointer, OfTwoChannelsWithOneTargetTheFirstIsPlayed)
@@ -294,6 +301,25 @@ TEST(GltfPointer, EmissionIsTheProductOfBothFactorsInEitherOrder)
       pose_first(scene, 0.5);
       EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(1.25F, 0.625F, 0.3125F));
     }
+  }
+}
+
+TEST(GltfPointer, AnEmissiveFactorHasAtMostOneAsWithoutAnimation)
+{
+  for (const bool is_spline : {false, true}) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["materials"] = {
+        {{"name", "paint"}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}}};
+    builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+    add_channel(builder, pointer_to("/materials/0/emissiveFactor"), {0, 1},
+                is_spline ? std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0, 0, 9, 0, 0, 2, 0.5F, 1, 9, 0, 0}
+                          : std::vector<float>{0, 0, 0, 2, 0.5F, 1},
+                "VEC3", is_spline ? "CUBICSPLINE" : "LINEAR");
+    Scene scene = import(builder);
+    pose_first(scene, 1.0);
+    EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(4.0F, 2.0F, 4.0F));
+    pose_first(scene, 0.5);
+    EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(2.0F, 1.0F, 2.0F));
   }
 }
 

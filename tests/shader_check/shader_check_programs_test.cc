@@ -165,6 +165,25 @@ TEST(CheckProgram, StagesBetweenVertexAndFragmentPassVaryingsOn)
   }
 }
 
+TEST(CheckProgram, AGeometryStagePassesInputsThrough)
+{
+  for (const auto &[declaration, name] :
+       {std::pair("layout(location = 1, passthrough) in vec3 n[];\n", "vec3 n;\n"),
+        {"layout(location = 1, passthrough) in B { vec3 n; } b[];\n", "B { vec3 n; };\n"}}) {
+    const auto program = [&, block = std::string(name)](const std::string &geometry) {
+      return Texts{{"p.vert", "#version 450\nlayout(location = 1) out " + block +
+                                  "void main() { n = vec3(1); gl_Position = vec4(0); }\n"},
+                   {"p.geom",
+                    "#version 450\n#extension GL_NV_geometry_shader_passthrough : require\n"
+                    "layout(triangles) in;\n" +
+                        geometry + "void main() { gl_Layer = 1; }\n"},
+                   {"p.frag", "#version 450\nlayout(location = 1) in " + block +
+                                  "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(n, 1); }\n"}};
+    };
+    EXPECT_EQ(messages_of(check_texts(program(declaration), for_target(CheckTarget::Vulkan12))), "") << declaration;
+  }
+}
+
 TEST(CheckProgram, BlocksOfOneNameMayDifferInVulkan)
 {
   const auto program = [](const std::string &vertex, const std::string &fragment) {
@@ -264,6 +283,11 @@ TEST(CheckProgram, TheTargetFollowsFromSigns)
        CheckTarget::Es},
       {"#ifdef GL_ES\nprecision mediump float;\n#endif\nvoid main() { gl_FragColor = gl_Color; }\n",
        CheckTarget::OpenGl},
+      {"#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types_int64 : enable\nuniform float k;\nout vec4 "
+       "c;\n"
+       "void main() { c = vec4(k, float(uint64_t(1)), 0, 0); }\n",
+       CheckTarget::OpenGl},
+      {"#version 450\n#extension GL_EXT_nonuniform_qualifier : enable\n" + out + main, CheckTarget::Vulkan12},
       {"#version 450\n#ifdef VULKAN\nlayout(push_constant) uniform P { float k; };\n#else\nconst float k = "
        "1.0;\n#endif\n" +
            out + "void main() { c = vec4(k); }\n",
@@ -441,6 +465,40 @@ TEST(CheckProgram, LineDirectivesMoveLinesAndFiles)
   }
 }
 
+TEST(CheckProgram, TheTakenLineDirectivesCount)
+{
+  const std::string unused = "layout(binding = 2) uniform sampler2D unused;\n";
+  const std::string end = "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(1); }\n";
+  const Texts files = {{"lib/x.glsl", "#line 1 \"gen.tpl\"\n#include \"y.glsl\"\n"},
+                       {"lib/y.glsl", "float y;\n\n"},
+                       {"lib/z.glsl", "#line __LINE__ + 20\n" + unused}};
+  for (const auto &[lines, place] : {std::pair("#ifdef GEN\n#line 900 \"gen.tpl\"\n#endif\n", "x.frag:5"),
+                                     {"#line __LINE__ \"gen.tpl\"\n", "gen.tpl:2"},
+                                     {"#line 50+50\n", "x.frag:100"},
+                                     {"#define N 3\n#line N * (N + 4)\n\n", "x.frag:22"},
+                                     {"#line 10\n#line __LINE__ + 5\n", "x.frag:15"},
+                                     {"#line 0\n\n#line __LINE__ + 5\n", "x.frag:6"},
+                                     {"#include \"lib/x.glsl\"\n\n#line __LINE__ + 5 \"b\"\n", "b:9"},
+                                     {"#line 7 \"a\"\n#include \"lib/x.glsl\"\n", "a:8"},
+                                     {"#include \"lib/z.glsl\"\n//", "lib/z.glsl:21"}}) {
+    Texts texts = files;
+    texts["x.frag"] = std::string("#version 450\n") + lines + unused + end;
+    const std::string found = messages_of(check_texts(texts, for_target(CheckTarget::Vulkan12)));
+    EXPECT_EQ(found, std::string(place) + ": warning: texture 'unused' is declared and never read [unused-binding]\n")
+        << lines;
+    // The compiler's own lines are the reference.
+    texts["x.frag"] = std::string("#version 450\n") + lines + "oops\n" + end;
+    texts["lib/z.glsl"] = "#line __LINE__ + 20\noops\n";
+    const std::string reference = messages_of(check_texts(texts, for_target(CheckTarget::Vulkan12)));
+    EXPECT_EQ(reference.find(std::string(place) + ": error: "), 0U) << lines << reference;
+  }
+  const std::string negative = messages_of(
+      check_texts({{"x.frag", "#version 450\n#line -5\nlayout(location = 0) out vec4 c;\nvoid main() { c = oops; }\n"}},
+                  for_target(CheckTarget::Vulkan12)));
+  EXPECT_EQ(negative.find("x.frag:1: error: 'oops' : undeclared identifier"), 0U) << negative;
+  EXPECT_EQ(negative.find("terminated"), std::string::npos) << negative;
+}
+
 TEST(CheckProgram, NamesThatAreKeywordsElsewhereStayInMessages)
 {
   for (const std::string name : {"highp", "mediump", "highp_value", "not_highp"}) {
@@ -480,6 +538,14 @@ TEST(CheckProgram, IncludesAreThoseOfTheCompiler)
   for (const auto &[lines, value] : right) {
     EXPECT_EQ(messages_of(check(lines, value)), "") << lines;
   }
+  // The system finds the file behind a link to a folder, and the text does not.
+  Texts linked = files;
+  linked["s/x.frag"] = including("#include \"link/a.glsl\"\n", "up()");
+  linked["s/link/a.glsl"] = "#include \"../near.glsl\"\n#include \"../b.glsl\"\n";
+  linked["s/link/../b.glsl"] = "float up() { return near_value(); }\n";
+  const ProgramCheck through = check_texts(linked, options);
+  EXPECT_EQ(messages_of(through), "");
+  EXPECT_EQ(through.files, (std::vector<std::string>{"s/x.frag", "s/link/a.glsl", "s/near.glsl", "s/link/../b.glsl"}));
   EXPECT_EQ(messages_of(check("#include <near.glsl>\n", "1.0"))
                 .find("s/x.frag:3: error: no shader file 'near.glsl' in the folders of -I [include]"),
             0U);
@@ -593,6 +659,14 @@ TEST(CheckProgram, LevelsAreSetForACallAFileAndALine)
   ProgramOptions strict;
   strict.is_strict = true;
   EXPECT_EQ(severity(text("", ""), strict), "error");
+  // A warning of the compiler.
+  const std::string precision =
+      "#version 440\nlayout(location = 0) out vec4 c;\nvoid main() { lowp float f = 1.0; c = vec4(f); }\n";
+  EXPECT_EQ(severity(precision, {}), "warning");
+  EXPECT_EQ(severity("// shader-check: compile-warning=off\n" + precision, {}), "off");
+  EXPECT_EQ(severity(precision, strict), "error");
+  strict.levels["compile-warning"] = RuleLevel::Off;
+  EXPECT_EQ(severity(precision, strict), "off");
   EXPECT_EQ(severity(text("", " // shader-check: unused-binding, hosts bind it"), {}), "off");
   EXPECT_EQ(severity(text("", " // shader-check: unused"), {}), "warning");
 }

@@ -63,7 +63,9 @@ void expect_one(const std::vector<CheckMessage> &messages, Severity severity, st
 std::vector<CheckMessage> check_expression(const std::string &body)
 {
   return check_fragment("layout(location = 0) in vec3 x; layout(location = 1) in vec3 y;" + COLOR +
-                        "void main() { color = vec4(0.0);\n" + body + "\n}\n");
+                        "void step_in(inout int k) { k++; } int next(int k) { return k + 1; } "
+                        "void main() { color = vec4(0.0);\n" +
+                        body + "\n}\n");
 }
 
 TEST(CheckRules, EachHasANameAndAPurpose)
@@ -323,13 +325,25 @@ TEST(CheckShader, UnboundedLoopsAreReported)
   for (const char *loop :
        {"for (int i = 0; i < 4; i++) { color += x.xyzx; }", "for (int i = 3; i >= 0; i -= 1) { color += x.xyzx; }",
         "int n = 9; while (n > 0) { n = n >> 1; color += x.xyzx; }", "int n = 9; do { n--; } while (n > 0);",
-        "float t = 0.0; while (t < 1.0 && x.x > 0.0) { t += 0.1; }",
-        "int n = 3; while (n-- > 0) { color += x.xyzx; }"}) {
+        "float t = 0.0; while (t < 1.0 && x.x > 0.0) { t += 0.1; }", "int n = 3; while (n-- > 0) { color += x.xyzx; }",
+        "while (true) { color += x.xyzx; if (color.x > 1.0) break; }",
+        "for (;;) { color += x.xyzx; if (color.x > 1.0) { return; } }",
+        "for (;;) { color += x.xyzx; for (int i = 0; i < 4; i++) { if (color.x > float(i)) discard; } }",
+        "bool go = true; int k = 0; while (go) { k++; go = k < 4; }",
+        "int lo = 0, hi = 9; while (lo < hi) { int mid = (lo + hi) / 2; if (mid > 3) hi = mid; else lo = mid + 1; }",
+        "int k = 0; while (k < 4) { step_in(k); }", "int k = 0; while (!(k > 3)) { k = next(k); }",
+        "int k = 0; while (next(k) < 4) { color += x.xyzx; }", "while (true) { color += x.xyzx; break; }",
+        "do { color += x.xyzx; } while (false);",
+        "float d = 1.0; vec3 p = x; while (d > 0.1) { p += y; d = length(p); }",
+        "int k = 0; while (k < 4 || k < 5) { k++; }"}) {
     SCOPED_TRACE(loop);
     expect_clean(check_expression(loop));
   }
-  for (const char *loop : {"while (true) { color += x.xyzx; if (color.x > 1.0) break; }",
-                           "for (;;) { color += x.xyzx; if (color.x > 1.0) break; }",
+  for (const char *loop : {"while (true) { color += x.xyzx; if (x.x > 1.0) break; }", "for (;;) { color += x.xyzx; }",
+                           "for (;;) { color += x.xyzx; switch (int(color.x)) { case 1: break; } }",
+                           "for (;;) { color += x.xyzx; for (int i = 0; i < 4; i++) { break; } }",
+                           "int k = 0; while (k < 4 || x.x > 0.0) { k++; }",
+                           "bool go = true; while (go) { color += x.xyzx; go = x.x > 0.0; }",
                            "float e = x.x; while (e > 0.1) { e = fract(e * x.y); }",
                            "int i = 0; for (int j = 0; i < 4; j++) { color += x.xyzx; }"}) {
     SCOPED_TRACE(loop);

@@ -12,6 +12,9 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <sys/stat.h>
+#include <unistd.h>
+#include <filesystem>
 #include <random>
 #include <set>
 
@@ -565,6 +568,15 @@ TEST(ViewScriptTest, WordsAreSeparatedBySpacesQuotesKeepThemAndCommentsEndALine)
   EXPECT_EQ(lines[1].number, 3);
   EXPECT_EQ(lines[1].words, (std::vector<std::string>{"set", "color", "1", "", "3"}));
   EXPECT_THROW(static_cast<void>(parse_script("open \"a")), std::runtime_error);
+  EXPECT_EQ(parse_script("\xEF\xBB\xBFquit\n").at(0).words, std::vector<std::string>{"quit"});
+}
+
+TEST(ViewScriptTest, APipeIsRefused)
+{
+  const std::filesystem::path fifo = std::filesystem::temp_directory_path() / ("script" + std::to_string(getpid()));
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0666), 0);
+  EXPECT_THROW(Script{fifo}, std::runtime_error);
+  std::filesystem::remove(fifo);
 }
 
 }  // namespace

@@ -136,7 +136,9 @@ class AnimationImporter {
       return;
     }
     if (!property) {
-      throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
+      // Only the end says what is not played.
+      constexpr std::size_t pointer_size_max = 400;
+      throw Fault("pointer", "'" + printable(channel.pointer, pointer_size_max) + "' is not played");
     }
     import_value_channel(sampler, *parts, *property, what, animation);
   }
@@ -303,6 +305,8 @@ class AnimationImporter {
     const bool is_strength = parts.path == strength_path;
     const std::size_t width = is_strength ? 1 : scene::width_of(property.name);
     value.track = track(sampler, width, types[width]);
+    const bool is_emissive_factor = property.name == "emissive" && !is_strength;
+    const double number_max = is_emissive_factor ? 1.0 : std::numeric_limits<double>::infinity();
     bool has_target = false;
     const auto add = [&]<typename T>(Handle<T> handle, const glm::dvec3 &factor) {
       if constexpr (!std::is_same_v<T, scene::Material>) {
@@ -313,7 +317,8 @@ class AnimationImporter {
       value.target = handle;
       value.factor = factor;
       if (!has_target) {
-        warn_of_range(value, parts, property, what, scene_.pool<T>()[handle].name);
+        warn_of_range(value, parts, property, what, scene_.pool<T>()[handle].name, number_max);
+        value.track = is_emissive_factor ? at_most_one(value.track) : value.track;
       }
       has_target = true;
       scene::add_value(animation, value);
@@ -347,9 +352,30 @@ class AnimationImporter {
     }
   }
 
-  /** Names the first value that \a property does not allow. scene::pose() takes the nearest one that it allows. */
+  /** \a track with keys of at most 1, as a factor that does not move is. Tangents of the others are 0. */
+  static SharedTrack at_most_one(const SharedTrack &track)
+  {
+    auto limited = std::make_shared<Track>(*track);
+    const bool is_spline = track->interpolation == Interpolation::CubicSpline;
+    for (std::size_t i = 0; i < limited->values.size(); i++) {
+      const bool is_tangent = is_spline && i / track->width % 3 != 1;
+      if (!is_tangent && limited->values[i] > 1.0F) {
+        limited->values[i] = 1.0F;
+        if (is_spline) {
+          limited->values[i - track->width] = limited->values[i + track->width] = 0.0F;
+        }
+      }
+    }
+    return limited->values == track->values ? track : limited;
+  }
+
+  /**
+   * Names the first value that \a property does not allow, or that is above \a number_max. scene::pose() takes the
+   * nearest one that the property allows.
+   */
   void warn_of_range(const AnimatedValue &value, const PointerParts &parts, const scene::Description &property,
-                     const std::string &what, const std::string &target)
+                     const std::string &what, const std::string &target,
+                     double number_max = std::numeric_limits<double>::infinity())
   {
     const Track &track = *value.track;
     const bool is_spline = track.interpolation == Interpolation::CubicSpline;
@@ -358,10 +384,10 @@ class AnimationImporter {
         // A key of a spline has a tangent before its value, and one after it.
         const double number = track.values[track.width * (is_spline ? 3 * key + 1 : key) + i];
         const double factor = i < 3 ? value.factor[int(i)] : 1.0;
-        if (!property.allows(number * factor)) {
+        if (!property.allows(number * factor) || number > number_max) {
           warnings_.add(what, fmt::format("the '{}' of '{}' is {} at {} s, clamped to {}", parts.path,
                                           printable(target), text(number), text(track.times[key]),
-                                          text(property.nearest(number * factor) / factor)));
+                                          text(std::min(property.nearest(number * factor) / factor, number_max))));
           return;
         }
       }

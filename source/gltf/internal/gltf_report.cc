@@ -8,8 +8,6 @@ namespace gnomon::gltf {
 
 namespace {
 
-constexpr std::size_t printable_size_max = 80;
-
 std::string joined(std::string_view what, std::string_view reason)
 {
   std::string result(what);
@@ -27,9 +25,9 @@ bool is_utf8_continuation(char character)
 
 Fault::Fault(std::string_view what, std::string_view reason) : std::runtime_error(joined(what, reason)) {}
 
-std::string printable(std::string_view name)
+std::string printable(std::string_view name, std::size_t size_max)
 {
-  std::string result(name.substr(0, printable_size_max));
+  std::string result(name.substr(0, size_max));
   if (result.size() < name.size()) {
     // Do not split a character.
     while (!result.empty() && is_utf8_continuation(name[result.size()])) {

@@ -28,8 +28,8 @@ struct LimitFault : Fault {
   }
 };
 
-/** A name from a file for a one-line message: shortened, and without control characters. */
-[[nodiscard]] std::string printable(std::string_view name);
+/** A name from a file for a one-line message: shortened to \a size_max bytes, and without control characters. */
+[[nodiscard]] std::string printable(std::string_view name, std::size_t size_max = 80);
 
 /** `kind 'name'`, or `kind index` if the name is empty. */
 [[nodiscard]] std::string label(std::string_view kind, std::string_view name, std::size_t index);

@@ -14,6 +14,9 @@ bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, b
   target_ = target;
   const bool is_done = glslang.add(*source, target, needs_slots);
   sources.push_back(std::move(source));
+  if (sources.back()->has_line_directives()) {
+    sources.back()->note_line_directives(GlslangProgram::preprocessed(*sources.back(), target), target);
+  }
   lines.emplace_back(*sources.back()).read(target);
   return is_done;
 }

@@ -24,20 +24,20 @@ constexpr std::array<std::string_view, 14> vulkan_words = {
     "shaderRecordEXT", "shaderRecordNV",         "accelerationStructureEXT", "rayQueryEXT",      "spirv_instruction",
     "constant_id",     "local_size_x_id",        "local_size_y_id",          "local_size_z_id"};
 /** Beginnings of names of extensions that only Vulkan has. */
-constexpr std::array<std::string_view, 14> vulkan_extensions = {"GL_KHR_vulkan_glsl",
+constexpr std::array<std::string_view, 10> vulkan_extensions = {"GL_KHR_vulkan_glsl",
                                                                 "GL_EXT_ray_",
                                                                 "GL_NV_ray_tracing",
                                                                 "GL_EXT_mesh_shader",
                                                                 "GL_EXT_buffer_reference",
-                                                                "GL_EXT_nonuniform_qualifier",
                                                                 "GL_KHR_memory_scope_semantics",
                                                                 "GL_EXT_debug_printf",
                                                                 "GL_EXT_scalar_block_layout",
-                                                                "GL_EXT_shader_explicit_arithmetic_types",
-                                                                "GL_EXT_shader_16bit_storage",
-                                                                "GL_EXT_shader_8bit_storage",
                                                                 "GL_EXT_samplerless_texture_functions",
                                                                 "GL_EXT_spirv_intrinsics"};
+/** Those that Vulkan's shaders have more often, and OpenGL's may have. */
+constexpr std::array<std::string_view, 4> likely_vulkan_extensions = {
+    "GL_EXT_nonuniform_qualifier", "GL_EXT_shader_explicit_arithmetic_types", "GL_EXT_shader_16bit_storage",
+    "GL_EXT_shader_8bit_storage"};
 constexpr std::array<std::string_view, 6> opengl_words = {"gl_VertexID", "gl_InstanceID", "gl_FragColor",
                                                           "gl_FragData", "atomic_uint",   "subroutine"};
 /** Words of OpenGL that OpenGL ES never had. */
@@ -134,6 +134,7 @@ class Reader {
          {std::pair(CheckTarget::OpenGlSpirv, &spirv_.sure), std::pair(CheckTarget::Vulkan12, &vulkan_.sure),
           std::pair(CheckTarget::Es, &es_.sure), std::pair(CheckTarget::Es, &old_es),
           std::pair(CheckTarget::OpenGl, &opengl), std::pair(CheckTarget::OpenGl, &no_version_.sure),
+          std::pair(CheckTarget::Vulkan12, &likely_vulkan_.sure),
           std::pair(CheckTarget::OpenGlSpirv, &spirv_.conditional),
           std::pair(CheckTarget::Vulkan12, &vulkan_.conditional), std::pair(CheckTarget::Es, &es_.conditional),
           std::pair(CheckTarget::OpenGl, &conditional_opengl)}) {
@@ -232,6 +233,9 @@ class Reader {
       else if (starts_with_one(vulkan_extensions, extension)) {
         set(vulkan_, path, line, extension);
       }
+      else if (starts_with_one(likely_vulkan_extensions, extension)) {
+        set(likely_vulkan_, path, line, extension);
+      }
     }
     else if (name == "include") {
       const bool is_local = scanner.take("\"");
@@ -264,16 +268,12 @@ class Reader {
 
   void read_include(const std::optional<fs::path> &beside, const std::string &named)
   {
-    if (beside && files_(beside->lexically_normal().string())) {
-      read_file(beside->lexically_normal().string());
-      return;
+    std::optional<FoundFile> found = beside ? find_file(*beside, files_) : std::nullopt;
+    for (auto folder = folders_.begin(); !found && folder != folders_.end(); ++folder) {
+      found = find_file(fs::path(*folder) / named, files_);
     }
-    for (const std::string &folder : folders_) {
-      const std::string path = (fs::path(folder) / named).lexically_normal().string();
-      if (files_(path)) {
-        read_file(path);
-        return;
-      }
+    if (found) {
+      read_file(found->path);
     }
   }
 
@@ -400,6 +400,7 @@ class Reader {
   bool is_layout_ = false;
   std::string_view last_word_;
   Sign vulkan_;
+  Sign likely_vulkan_;
   Sign spirv_;
   Sign es_;
   Sign opengl_;

@@ -89,7 +89,44 @@ std::string_view operator_name(TOperator op)
   }
 }
 
-/** Whether the loop steps a side of a comparison in its condition, by `++`, `+=`, `i = i + …` and the like. */
+/** Whether \a op may return another value each time. */
+bool is_call(TOperator op)
+{
+  return op == glslang::EOpFunctionCall || op == glslang::EOpRayQueryProceed ||
+         (op >= glslang::EOpAtomicAdd && op <= glslang::EOpAtomicCounterCompSwap) ||
+         (op >= glslang::EOpImageAtomicAdd && op <= glslang::EOpImageAtomicStore);
+}
+
+/** Whether an expression has a call, or a step such as `i--`. */
+class Calls : public TIntermTraverser {
+ public:
+  bool is_any = false;
+
+  bool visitUnary(TVisit, TIntermUnary *unary) override
+  {
+    return note(unary->getOp());
+  }
+  bool visitBinary(TVisit, TIntermBinary *binary) override
+  {
+    return note(binary->getOp());
+  }
+  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
+  {
+    return note(aggregate->getOp());
+  }
+
+ private:
+  bool note(TOperator op)
+  {
+    is_any |= is_call(op) || is_assignment(op);
+    return !is_any;
+  }
+};
+
+/**
+ * Values that a loop steps: by `++`, `+=`, a function's parameter or an assignment that reads the value itself
+ * (`i = i + 1`, also by way of others), and values that are computed from stepped ones.
+ */
 class LoopSteps : public TIntermTraverser {
  public:
   explicit LoopSteps(TIntermLoop *loop)
@@ -97,6 +134,18 @@ class LoopSteps : public TIntermTraverser {
     for (TIntermNode *part : {loop->getBody(), static_cast<TIntermNode *>(loop->getTerminal())}) {
       if (part != nullptr) {
         part->traverse(this);
+      }
+    }
+    add_cycles();
+    // Each new one makes those stepped that are computed from it.
+    std::vector<std::string> open(stepped_.begin(), stepped_.end());
+    while (!open.empty()) {
+      const std::string value = std::move(open.back());
+      open.pop_back();
+      for (const std::string &target : readers_[value]) {
+        if (stepped_.insert(target).second) {
+          open.push_back(target);
+        }
       }
     }
   }
@@ -110,38 +159,158 @@ class LoopSteps : public TIntermTraverser {
   bool visitBinary(TVisit, TIntermBinary *binary) override
   {
     const std::string target = is_assignment(binary->getOp()) ? access_path(binary->getLeft()) : std::string();
-    const bool is_step = binary->getOp() != glslang::EOpAssign || (binary->getRight()->getAsBinaryNode() != nullptr &&
-                                                                   paths_of(binary->getRight()).contains(target));
-    if (!target.empty() && is_step) {
+    if (target.empty()) {
+      return true;
+    }
+    if (binary->getOp() != glslang::EOpAssign) {
       stepped_.insert(target);
+      return true;
+    }
+    for (const std::string &read : paths_of(binary->getRight())) {
+      readers_[read].insert(target);
+      if (is_arithmetic(binary->getRight())) {
+        arithmetic_[target].insert(read);
+      }
     }
     return true;
   }
+  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
+  {
+    const auto &qualifiers = aggregate->getQualifierList();
+    for (std::size_t i = 0; i < qualifiers.size() && i < aggregate->getSequence().size(); i++) {
+      if (qualifiers[i] == glslang::EvqOut || qualifiers[i] == glslang::EvqInOut) {
+        stepped_.insert(access_path(aggregate->getSequence()[i]));
+      }
+    }
+    return true;
+  }
+  /** Whether \a test changes from one turn to the next. */
   bool bound(TIntermTyped *test) const
   {
-    if (test == nullptr || test->getAsConstantUnion() != nullptr) {
+    if (test == nullptr) {
       return false;
     }
-    // A test that includes a step, `i-- > 0`, or a function call is assumed to bound the loop.
-    const std::vector<TIntermTyped *> sides = arguments_of(test);
-    switch (operator_of(test)) {
-      case glslang::EOpLogicalAnd: return std::ranges::any_of(sides, [&](TIntermTyped *side) { return bound(side); });
-      case glslang::EOpLessThan:
-      case glslang::EOpGreaterThan:
-      case glslang::EOpLessThanEqual:
-      case glslang::EOpGreaterThanEqual:
-      case glslang::EOpEqual:
-      case glslang::EOpNotEqual:
-        return std::ranges::any_of(sides, [&](TIntermTyped *side) {
-          return is_assignment(operator_of(side)) ||
-                 std::ranges::any_of(paths_of(side), [&](const std::string &read) { return stepped_.contains(read); });
-        });
-      default: return false;
+    if (const auto *constant = test->getAsConstantUnion()) {
+      return !constant->getConstArray()[0].getBConst();
     }
+    const auto is_bound = [&](TIntermTyped *side) { return bound(side); };
+    switch (operator_of(test)) {
+      case glslang::EOpLogicalAnd: return std::ranges::any_of(arguments_of(test), is_bound);
+      case glslang::EOpLogicalOr: return std::ranges::all_of(arguments_of(test), is_bound);
+      default: break;
+    }
+    Calls calls;
+    test->traverse(&calls);
+    return calls.is_any ||
+           std::ranges::any_of(paths_of(test), [&](const std::string &read) { return stepped_.contains(read); });
   }
 
  private:
+  /** Whether \a node is made by operators and not by a built-in function, which may have a limit: `e = fract(e)`. */
+  static bool is_arithmetic(TIntermTyped *node)
+  {
+    const TOperator op = operator_of(node);
+    return node->getAsBinaryNode() != nullptr || node->getAsSymbolNode() != nullptr ||
+           node->getAsSelectionNode() != nullptr || is_call(op) || op == glslang::EOpNegative ||
+           op == glslang::EOpLogicalNot || op == glslang::EOpBitwiseNot ||
+           (op > glslang::EOpConstructGuardStart && op < glslang::EOpConstructGuardEnd) ||
+           (op >= glslang::EOpConvInt8ToBool && op <= glslang::EOpConvDoubleToFloat);
+  }
+  /** Adds the values that are computed from themselves, by Kahn's algorithm. */
+  void add_cycles()
+  {
+    std::map<std::string, std::size_t> open_reads;
+    std::vector<std::string> done;
+    for (const auto &[target, reads] : arithmetic_) {
+      const auto count =
+          std::ranges::count_if(reads, [&](const std::string &read) { return arithmetic_.contains(read); });
+      open_reads[target] = std::size_t(count);
+      if (count == 0) {
+        done.push_back(target);
+      }
+    }
+    while (!done.empty()) {
+      const std::string value = std::move(done.back());
+      done.pop_back();
+      open_reads.erase(value);
+      for (const std::string &target : readers_[value]) {
+        const auto reader = open_reads.find(target);
+        if (reader != open_reads.end() && arithmetic_[target].contains(value) && --reader->second == 0) {
+          done.push_back(target);
+        }
+      }
+    }
+    for (const auto &[target, count] : open_reads) {
+      stepped_.insert(target);
+    }
+  }
+
   std::set<std::string> stepped_;
+  /** What assignments by arithmetic read, by what they assign. */
+  std::map<std::string, std::set<std::string>> arithmetic_;
+  /** What assignments assign, by what they read. */
+  std::map<std::string, std::set<std::string>> readers_;
+};
+
+/** Whether a loop has a break, return or discard that is reached under no condition, or under one that changes. */
+class LoopExits : public TIntermTraverser {
+ public:
+  bool is_any = false;
+
+  LoopExits(TIntermLoop *loop, const LoopSteps &steps) : steps_(steps)
+  {
+    if (loop->getBody() != nullptr) {
+      loop->getBody()->traverse(this);
+    }
+  }
+  bool visitSelection(TVisit, TIntermSelection *selection) override
+  {
+    within(selection->getCondition(), false, {selection->getTrueBlock(), selection->getFalseBlock()});
+    return false;
+  }
+  bool visitSwitch(TVisit, glslang::TIntermSwitch *choice) override
+  {
+    within(choice->getCondition()->getAsTyped(), true, {choice->getBody()});
+    return false;
+  }
+  bool visitLoop(TVisit, TIntermLoop *loop) override
+  {
+    within(loop->getTest(), true, {loop->getBody()});
+    return false;
+  }
+  bool visitBranch(TVisit, glslang::TIntermBranch *branch) override
+  {
+    const bool is_continue = branch->getFlowOp() == glslang::EOpContinue || branch->getFlowOp() == glslang::EOpCase ||
+                             branch->getFlowOp() == glslang::EOpDefault;
+    const bool is_inner_break = branch->getFlowOp() == glslang::EOpBreak && inner_count_ > 0;
+    is_any |= !is_continue && !is_inner_break && (condition_count_ == 0 || bound_count_ > 0);
+    return true;
+  }
+
+ private:
+  /** \a takes_breaks: a break within \a parts leaves them and not the loop. */
+  void within(TIntermTyped *condition, bool takes_breaks, std::initializer_list<TIntermNode *> parts)
+  {
+    const int is_condition = condition == nullptr ? 0 : 1;
+    const int is_bound = steps_.bound(condition) ? 1 : 0;
+    const int is_inner = takes_breaks ? 1 : 0;
+    condition_count_ += is_condition;
+    bound_count_ += is_bound;
+    inner_count_ += is_inner;
+    for (TIntermNode *part : parts) {
+      if (part != nullptr) {
+        part->traverse(this);
+      }
+    }
+    condition_count_ -= is_condition;
+    bound_count_ -= is_bound;
+    inner_count_ -= is_inner;
+  }
+
+  const LoopSteps &steps_;
+  int condition_count_ = 0;
+  int bound_count_ = 0;
+  int inner_count_ = 0;
 };
 
 /** Whether \a text ends with a constructor and its opening parenthesis: `float(`. */
@@ -193,11 +362,13 @@ class FunctionLint : public TIntermTraverser {
   }
   bool visitLoop(TVisit, TIntermLoop *loop) override
   {
-    if (!LoopSteps(loop).bound(loop->getTest())) {
+    const LoopSteps steps(loop);
+    if (!steps.bound(loop->getTest()) && !LoopExits(loop, steps).is_any) {
       // A loop has no position; its parts have.
       const TIntermNode *known = loop->getTest() != nullptr ? loop->getTest() : loop->getBody();
       const glslang::TSourceLoc loc = loop->getLoc().line > 0 || known == nullptr ? loop->getLoc() : known->getLoc();
-      add("unbounded-loop", loc, "the loop may not end: it steps no side of a comparison in its condition");
+      add("unbounded-loop", loc,
+          "the loop may not end: it steps no value that its condition or that of a break, return or discard reads");
     }
     return true;
   }

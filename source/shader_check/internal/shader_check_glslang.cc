@@ -133,6 +133,21 @@ int set_target(glslang::TShader &shader, EShLanguage language, CheckTarget targe
   return desktop_version;
 }
 
+/** Gives \a shader the text of \a source and returns what \a read does with the version and the includer. */
+template <typename Read>
+bool read_source(glslang::TShader &shader, StageSource &source, CheckTarget target, Read &&read)
+{
+  const char *text = source.text().c_str();
+  const int length = int(source.text().size());
+  const char *name = source.name().empty() ? nullptr : source.name().c_str();
+  shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
+  shader.setPreamble(source.preamble().c_str());
+  const int version = set_target(shader, glslang_language(source.stage()), target);
+  glslang::TShader::ForbidIncluder none;
+  glslang::TShader::Includer *includer = source.start_includer();
+  return read(version, includer == nullptr ? none : *includer);
+}
+
 }  // namespace
 
 bool GlslangProgram::add(StageSource &source, CheckTarget target, bool needs_slots)
@@ -141,24 +156,27 @@ bool GlslangProgram::add(StageSource &source, CheckTarget target, bool needs_slo
     log_ = fmt::format("ERROR: {}:1: {}\n", source.name().empty() ? "0" : source.name(), too_long_text());
     return false;
   }
-  const EShLanguage language = glslang_language(source.stage());
-  glslang::TShader &shader = *shaders_.emplace_back(std::make_unique<glslang::TShader>(language));
-  const char *text = source.text().c_str();
-  const int length = int(source.text().size());
-  const char *name = source.name().empty() ? nullptr : source.name().c_str();
-  shader.setStringsWithLengthsAndNames(&text, &length, &name, 1);
-  shader.setPreamble(source.preamble().c_str());
-  const int version = set_target(shader, language, target);
+  glslang::TShader &shader =
+      *shaders_.emplace_back(std::make_unique<glslang::TShader>(glslang_language(source.stage())));
   // glslang maps nothing without a call of mapIO().
   shader.setAutoMapBindings(!needs_slots);
   shader.setAutoMapLocations(!needs_slots);
-  glslang::TShader::ForbidIncluder none;
-  glslang::TShader::Includer *includer = source.includer();
-  const bool is_done =
-      shader.parse(GetDefaultResources(), version, false, messages, includer == nullptr ? none : *includer);
+  const bool is_done = read_source(shader, source, target, [&](int version, glslang::TShader::Includer &includer) {
+    return shader.parse(GetDefaultResources(), version, false, messages, includer);
+  });
   log_ = shader.getInfoLog();
   program_->addShader(&shader);
   return is_done;
+}
+
+std::string GlslangProgram::preprocessed(StageSource &source, CheckTarget target)
+{
+  glslang::TShader shader(glslang_language(source.stage()));
+  std::string text;
+  read_source(shader, source, target, [&](int version, glslang::TShader::Includer &includer) {
+    return shader.preprocess(GetDefaultResources(), version, ENoProfile, false, false, messages, &text, includer);
+  });
+  return text;
 }
 
 bool GlslangProgram::link()

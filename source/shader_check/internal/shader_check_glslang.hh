@@ -32,6 +32,8 @@ class GlslangProgram {
    * stage_bytes_max are refused. \a needs_slots: whether the target's rules about missing locations and bindings apply.
    */
   bool add(StageSource &source, CheckTarget target, bool needs_slots = true);
+  /** \a source after the preprocessor; up to its first mistake if it has one. */
+  [[nodiscard]] static std::string preprocessed(StageSource &source, CheckTarget target);
   /** Call it after adding all stages. false on failure: log() has the reason. */
   bool link();
   /** Log of the last call. */

@@ -49,7 +49,10 @@ std::optional<Severity> take_severity(gpu::TextScanner &scanner)
 std::optional<std::pair<int, int>> take_line(gpu::TextScanner &scanner)
 {
   const bool has_colon = scanner.take(":");
-  const std::optional<int> line = has_colon ? scanner.take_number() : std::nullopt;
+  // A `#line` may give a negative number, which is no line of a file.
+  const bool is_negative = has_colon && scanner.take("-");
+  std::optional<int> line = has_colon ? scanner.take_number() : std::nullopt;
+  line = line && is_negative ? std::optional(1) : line;
   if (!line) {
     return std::nullopt;
   }

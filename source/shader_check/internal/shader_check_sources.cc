@@ -98,6 +98,19 @@ std::string_view without_byte_order_mark(std::string_view text)
   return text.substr(text.starts_with(mark) ? mark.size() : 0);
 }
 
+std::optional<FoundFile> find_file(const fs::path &path, const gpu::ShaderFiles &files)
+{
+  const std::string plain = path.lexically_normal().string();
+  const std::optional<std::string_view> plain_text = files(plain);
+  const bool has_parent = std::ranges::find(path, fs::path("..")) != path.end();
+  const std::optional<std::string_view> text =
+      has_parent && path != fs::path(plain) ? files(path.string()) : std::nullopt;
+  if (text && text != plain_text) {
+    return FoundFile{path.string(), *text};
+  }
+  return plain_text ? std::optional(FoundFile{plain, *plain_text}) : std::nullopt;
+}
+
 std::optional<Version> version_in(std::string_view text)
 {
   bool is_in_comment = false;
@@ -190,6 +203,13 @@ class StageSource::Includer : public glslang::TShader::Includer {
     delete result;
   }
 
+  /** Call it before the stage is read again. */
+  void restart()
+  {
+    bytes_ = 0;
+    skipped_bytes_ = 0;
+  }
+
  private:
   /** \a beside: is tried before the folders. */
   IncludeResult *find(const std::string &named, std::size_t depth, const fs::path *beside)
@@ -197,14 +217,13 @@ class StageSource::Includer : public glslang::TShader::Includer {
     if (depth > include_depth_max) {
       return failed(fmt::format("'{}' is included at a depth of more than {}", named, include_depth_max));
     }
-    const auto found = [&](const fs::path &path) { return open(path.lexically_normal().string()); };
     if (beside != nullptr) {
-      if (IncludeResult *result = found(*beside)) {
+      if (IncludeResult *result = open(*beside)) {
         return result;
       }
     }
     for (const std::string &folder : folders_) {
-      if (IncludeResult *result = found(fs::path(folder) / named)) {
+      if (IncludeResult *result = open(fs::path(folder) / named)) {
         return result;
       }
     }
@@ -216,18 +235,22 @@ class StageSource::Includer : public glslang::TShader::Includer {
     return failure(earlier.empty() ? fmt::format("no shader file '{}' in the folders of -I", named) : earlier);
   }
 
-  IncludeResult *open(const std::string &path)
+  IncludeResult *open(const fs::path &path)
   {
-    std::optional<std::string_view> text = files_(path);
-    if (!text) {
-      if (std::ranges::find(source_.absent_, path) == source_.absent_.end()) {
-        source_.absent_.push_back(path);
+    const gpu::ShaderFiles noted = [&](std::string_view tried) {
+      const std::optional<std::string_view> text = files_(tried);
+      if (!text && std::ranges::find(source_.absent_, tried) == source_.absent_.end()) {
+        source_.absent_.emplace_back(tried);
       }
+      return text;
+    };
+    const std::optional<FoundFile> found = find_file(path, noted);
+    if (!found) {
       return nullptr;
     }
-    const std::size_t file = source_.file_of(path);
-    text = source_.unmarked(file, *text);
-    count(file, *text);
+    const std::size_t file = source_.file_of(found->path);
+    const std::string_view text = source_.unmarked(file, found->text);
+    count(file, text);
     if (bytes_ + source_.text_.size() > stage_bytes_max) {
       return failed(too_long_text());
     }
@@ -235,7 +258,7 @@ class StageSource::Includer : public glslang::TShader::Includer {
       return failed(fmt::format("include guards skip more than {} bytes", skipped_bytes_max));
     }
     reason_.clear();
-    return new IncludeResult(name_of(file), text->data(), text->size(), nullptr);
+    return new IncludeResult(name_of(file), text.data(), text.size(), nullptr);
   }
 
   /** Counts the bytes of an include. Bytes that a guard skips are counted apart: glslang only looks for its end. */
@@ -318,8 +341,11 @@ StageSource::StageSource(Stage stage, std::string path, std::string_view text, c
 
 StageSource::~StageSource() = default;
 
-glslang::TShader::Includer *StageSource::includer()
+glslang::TShader::Includer *StageSource::start_includer()
 {
+  if (includer_ != nullptr) {
+    includer_->restart();
+  }
   return includer_.get();
 }
 
@@ -363,11 +389,10 @@ SourcePosition StageSource::position(std::string_view name, int line, int column
 
 namespace {
 
-struct LineDirective {
-  int line = 1;
-  /** A name, or a number; empty: the file stays. */
-  std::string_view file;
-};
+int line_count(std::string_view text)
+{
+  return int(std::ranges::count(text, '\n')) + (text.empty() || text.ends_with('\n') ? 0 : 1);
+}
 
 /** Reads `#line LINE`, `#line LINE NUMBER` or `#line LINE "NAME"`. \return empty without a number */
 std::optional<LineDirective> line_directive(std::string_view text)
@@ -402,22 +427,81 @@ std::uint64_t key_of(SourcePosition position)
 
 }  // namespace
 
+bool StageSource::has_line_directives() const
+{
+  return has_includer() && std::ranges::any_of(texts_, [](const File &file) {
+           for (std::size_t at = find_word(file.text, "line"); at != std::string_view::npos;
+                at = find_word(file.text, "line", at + 1)) {
+             const std::size_t before = file.text.find_last_not_of(" \t", at == 0 ? 0 : at - 1);
+             if (before != std::string_view::npos && file.text[before] == '#') {
+               return true;
+             }
+           }
+           return false;
+         });
+}
+
+bool StageSource::line_sets_next(CheckTarget target) const
+{
+  const std::optional<Version> version = version_in(text_);
+  return version ? version->number == 100 || version->number >= 300 : target == CheckTarget::Es;
+}
+
+void StageSource::note_line_directives(std::string_view preprocessed, CheckTarget target)
+{
+  struct Place {
+    std::size_t file;
+    int line;
+    int line_count;
+  };
+  // The files whose includes are open, the innermost last.
+  std::vector<Place> open;
+  const auto enter = [&](std::size_t file) {
+    const auto text = std::ranges::find(texts_, file, &File::index);
+    open.push_back({file, 1, text == texts_.end() ? 0 : line_count(text->text)});
+  };
+  enter(0);
+  // The first line is that of the preamble.
+  open.back().line = 0;
+  while (!preprocessed.empty()) {
+    const std::string_view text = preprocessed.substr(0, preprocessed.find('\n'));
+    preprocessed.remove_prefix(std::min(text.size() + 1, preprocessed.size()));
+    const auto directive = text.starts_with("#line ") ? line_directive(text) : std::nullopt;
+    const std::optional<std::size_t> file = directive ? file_named(directive->file) : std::nullopt;
+    if (directive && open.size() > 1 && open.back().line > open.back().line_count) {
+      // glslang adds one behind each include, with the name that the including file then has.
+      open.pop_back();
+    }
+    else if (file) {
+      // And one before.
+      enter(*file);
+      continue;
+    }
+    else if (directive) {
+      directives_.try_emplace({open.back().file, open.back().line}, *directive);
+      // glslang joins the lines 0 and 1.
+      open.back().line += directive->line == 0 && line_sets_next(target) ? 1 : 0;
+    }
+    open.back().line++;
+  }
+}
+
 void SourceLines::read(CheckTarget target)
 {
-  // `#line N` sets the number of the next line in GLSL ES and from version 3.30 on, else that of its own line.
-  bool line_sets_next = target == CheckTarget::Es;
+  const bool line_sets_next = source_.line_sets_next(target);
   for (const StageSource::File &file : source_.texts()) {
     read_levels(file);
     SourcePosition position{file.index, 1, 0};
     bool is_in_comment = false;
-    for (std::string_view rest = file.text; !rest.empty();) {
+    int number = 1;
+    for (std::string_view rest = file.text; !rest.empty(); number++) {
       const std::string_view text = rest.substr(0, rest.find('\n'));
       rest.remove_prefix(std::min(text.size() + 1, rest.size()));
       const std::string_view directive = is_in_comment ? std::string_view() : gpu::directive_of(text);
-      if (const std::optional<Version> version = directive == "version" ? version_in(text) : std::nullopt) {
-        line_sets_next = version->number == 100 || version->number >= 300;
-      }
-      if (const std::optional<LineDirective> set = directive == "line" ? line_directive(text) : std::nullopt) {
+      const std::optional<LineDirective> set = directive != "line"      ? std::nullopt
+                                               : source_.has_includer() ? source_.line_directive_at(file.index, number)
+                                                                        : line_directive(text);
+      if (set) {
         const bool is_number = set->file.find_first_not_of("0123456789") == std::string_view::npos;
         if (is_number && source_.has_includer() && !set->file.empty()) {
           source_.note_number(set->file, file.index);

@@ -5,7 +5,9 @@
 
 #include <glslang/Public/ShaderLang.h>
 
+#include <filesystem>
 #include <list>
+#include <map>
 #include <memory>
 #include <string_view>
 #include <unordered_map>
@@ -34,6 +36,18 @@ struct SourcePosition {
 /** \a text without the byte-order mark (U+FEFF in UTF-8) at its begin. */
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
+/** A file and its name. */
+struct FoundFile {
+  std::string path;
+  std::string_view text;
+};
+
+/**
+ * The file at \a path, as the system finds it: behind a link to a folder, `..` is not the folder before it in the path.
+ * Its name is the shortest one for the same text.
+ */
+[[nodiscard]] std::optional<FoundFile> find_file(const std::filesystem::path &path, const gpu::ShaderFiles &files);
+
 /** The content of `#version`. */
 struct Version {
   int number = 0;
@@ -56,6 +70,13 @@ struct Version {
  * has none.
  */
 [[nodiscard]] std::string_view include_guard_of(std::string_view text);
+
+/** The content of `#line`. */
+struct LineDirective {
+  int line = 1;
+  /** A name, or a number; empty: the file stays. */
+  std::string file;
+};
 
 /** The message about a stage that is longer than stage_bytes_max. */
 [[nodiscard]] std::string too_long_text();
@@ -92,8 +113,8 @@ class StageSource {
   {
     return name_;
   }
-  /** nullptr: the text has its includes. */
-  [[nodiscard]] glslang::TShader::Includer *includer();
+  /** For one reading of the stage; nullptr: the text has its includes. */
+  [[nodiscard]] glslang::TShader::Includer *start_includer();
 
   /** Names of files: those that were read and those that `#line` names. */
   [[nodiscard]] const std::vector<std::string> &files() const
@@ -129,6 +150,18 @@ class StageSource {
   {
     numbers_.try_emplace(std::string(number), file);
   }
+  /** Whether a file that was read has a `#line`, and whether it is taken is for glslang to say. */
+  [[nodiscard]] bool has_line_directives() const;
+  /** Notes each `#line` that glslang takes, with its values. \a preprocessed: the output of its preprocessor. */
+  void note_line_directives(std::string_view preprocessed, CheckTarget target);
+  /** The noted `#line` at a line of a file that was read; empty: glslang does not take it. */
+  [[nodiscard]] std::optional<LineDirective> line_directive_at(std::size_t file, int line) const
+  {
+    const auto found = directives_.find({file, line});
+    return found == directives_.end() ? std::nullopt : std::optional(found->second);
+  }
+  /** Whether `#line N` numbers the next line, as in GLSL ES and from version 3.30 on, and not its own. */
+  [[nodiscard]] bool line_sets_next(CheckTarget target) const;
   /** Whether a file may be included several times, so that its number is that of no string of glslang's. */
   [[nodiscard]] bool has_includer() const
   {
@@ -149,6 +182,7 @@ class StageSource {
   std::unordered_map<std::string, std::size_t> indices_;
   /** Files by the numbers that `#line` gives them. */
   std::unordered_map<std::string, std::size_t> numbers_;
+  std::map<std::pair<std::size_t, int>, LineDirective> directives_;
   std::vector<File> texts_;
   std::vector<std::size_t> marked_;
   std::vector<std::string> absent_;

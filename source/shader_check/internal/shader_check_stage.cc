@@ -398,7 +398,17 @@ class SpirvReader {
     declaration.position = lines_.find_declaration(declaration.name, is_input ? "in" : "out");
     declaration.is_arrayed = is_arrayed(variable.id, is_input);
     declaration.is_captured = find(variable.id, spv::DecorationOffset) != nullptr;
-    std::vector<Declaration> &list = is_input ? facts.inputs : facts.outputs;
+    if (is_input && find(variable.id, spv::DecorationPassthroughNV) != nullptr) {
+      // GL_NV_geometry_shader_passthrough: the stage writes it as it reads it.
+      declaration.is_used = true;
+      add_varying(type, declaration, true, facts.outputs, variable);
+    }
+    add_varying(type, std::move(declaration), is_input, is_input ? facts.inputs : facts.outputs, variable);
+  }
+
+  void add_varying(std::uint32_t type, Declaration declaration, bool is_input, std::vector<Declaration> &list,
+                   const SpirvVariable &variable)
+  {
     const std::uint32_t element = element_of(type);
     const SpirvType &block = module_.type(element);
     static const Decorations none;
@@ -449,7 +459,7 @@ class SpirvReader {
       case spv::StorageClassStorageBuffer:
       case spv::StorageClassShaderRecordBufferKHR: add_block(variable, type, true, std::move(declaration)); break;
       case spv::StorageClassUniformConstant:
-      case spv::StorageClassAtomicCounter: add_texture(type, std::move(declaration)); break;
+      case spv::StorageClassAtomicCounter: add_texture(variable, type, std::move(declaration)); break;
       default: break;
     }
   }
@@ -466,18 +476,48 @@ class SpirvReader {
     (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
   }
 
-  void add_texture(std::uint32_t type, Declaration declaration)
+  /**
+   * Adds a uniform outside of blocks, of structs each member, as OpenGL names them. Of an array of structs, the first
+   * element stands for all. \return the number of its locations
+   */
+  std::uint32_t add_uniform(std::uint32_t type, const std::string &name, int location, const Declaration &declaration)
+  {
+    std::uint32_t element_count = 1;
+    std::string first = name;
+    std::uint32_t element = type;
+    for (; is_array(module_.type(element)); element = module_.type(element).operands[0]) {
+      element_count *= std::uint32_t(std::max(length_of(module_.type(element)), 1));
+      first += "[0]";
+    }
+    const SpirvType &structure = module_.type(element);
+    if (structure.op != spv::OpTypeStruct) {
+      Declaration &uniform = facts.uniforms.emplace_back(declaration);
+      uniform.name = name;
+      uniform.type = declared_type(type);
+      uniform.location = location;
+      return element_count;
+    }
+    std::uint32_t member_count = 0;
+    for (std::uint32_t i = 0; i < structure.operands.size(); i++) {
+      member_count += add_uniform(structure.operands[i], first + "." + member_of(structure, i).name,
+                                  location < 0 ? -1 : int(std::uint32_t(location) + member_count), declaration);
+    }
+    return element_count * member_count;
+  }
+
+  void add_texture(const SpirvVariable &variable, std::uint32_t type, Declaration declaration)
   {
     declaration.type = declared_type(type);
     const SpirvType &element = module_.type(element_of(type));
     declaration.is_image =
         element.op == spv::OpTypeImage && element.operands[5] == 2 && element.operands[1] != spv::DimSubpassData;
     const bool is_atomic = element.op == spv::OpTypeInt && declaration.slot >= 0;
-    // Others are uniforms outside of blocks.
-    if (declaration.type.scalar.empty() || is_atomic) {
-      declaration.position = lines_.find_declaration(declaration.name, "uniform");
-      facts.textures.push_back(std::move(declaration));
+    if (!is_atomic && (declaration.type.is_struct || !declaration.type.scalar.empty())) {
+      add_uniform(type, declaration.name, value_or(find(variable.id, spv::DecorationLocation), -1), declaration);
+      return;
     }
+    declaration.position = lines_.find_declaration(declaration.name, "uniform");
+    facts.textures.push_back(std::move(declaration));
   }
 
   const SpirvModule &module_;

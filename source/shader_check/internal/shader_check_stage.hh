@@ -80,6 +80,8 @@ struct StageFacts {
   std::vector<Declaration> uniform_blocks;
   std::vector<Declaration> storage_blocks;
   std::vector<Declaration> textures;
+  /** Outside of blocks, of structs each member. Only read_spirv() sets them. */
+  std::vector<Declaration> uniforms;
   std::vector<Declaration> inputs;
   std::vector<Declaration> outputs;
   std::vector<StageFinding> findings;

@@ -222,6 +222,11 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
   }
   else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
     declaration.position = lines.find_declaration(declaration.name, qualifier.isPipeInput() ? "in" : "out");
+    if (qualifier.layoutPassthrough) {
+      // GL_NV_geometry_shader_passthrough: the stage writes it as it reads it.
+      declaration.is_used = true;
+      add_varying(declaration, type, language, facts.outputs);
+    }
     add_varying(std::move(declaration), type, language, qualifier.isPipeInput() ? facts.inputs : facts.outputs);
   }
 }
