@@ -53,9 +53,7 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
 std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device) const
 {
   const fs::path path = fs::path(options_.report_folder) / "report.json";
-  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
-  }
+  output::require_readable(path, path.string() + ": ");
   std::ifstream file(path);
   if (!file) {
     throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));

@@ -196,9 +196,7 @@ glm::ivec2 size_of_window(const Imath::Box2i &window)
 
 ExrInput::ExrInput(const fs::path &path) : path_(path)
 {
-  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-    throw std::runtime_error(std::string(reason));
-  }
+  output::require_readable(path);
   std::error_code error;
   file_bytes_ = fs::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);

@@ -100,9 +100,7 @@ static Picture read_radiance_picture(const Bytes &file)
 
 static Picture read_any_picture(const fs::path &path, const std::string &layer)
 {
-  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-    throw std::runtime_error(std::string(reason));
-  }
+  output::require_readable(path);
   if (std::optional<Picture> picture = read_exr_picture(path, layer)) {
     return std::move(*picture);
   }

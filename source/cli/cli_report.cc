@@ -214,9 +214,7 @@ void Run::resume()
     return;
   }
   try {
-    if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-      throw std::runtime_error(std::string(reason));
-    }
+    output::require_readable(path);
     std::ifstream file(path);
     measure::RunReport before = measure::run_from_json(nlohmann::json::parse(file));
     // Times are comparable only for the same build, machine and driver.

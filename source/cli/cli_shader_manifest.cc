@@ -278,9 +278,7 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
 
 ShaderManifest read_shader_manifest(const fs::path &path)
 {
-  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
-  }
+  output::require_readable(path, path.string() + ": ");
   std::ifstream stream(path);
   if (!stream) {
     throw std::runtime_error(fmt::format("{}: the file cannot be read", path.string()));

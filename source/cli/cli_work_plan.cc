@@ -167,9 +167,7 @@ WorkPlan read_plan(const std::filesystem::path &path, const std::string &program
 {
   WorkPlan plan;
   try {
-    if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-      throw std::runtime_error(std::string(reason));
-    }
+    output::require_readable(path);
     std::ifstream file(path);
     if (!file) {
       throw std::runtime_error("cannot be read");

@@ -39,8 +39,8 @@ struct ExportError : std::runtime_error {
 void export_gltf(const scene::Scene &scene, const std::filesystem::path &path);
 
 /**
- * What the file at \a path has and export_gltf() does not write of a scene that was read from it, such as
- * "2 variants of materials"; empty: nothing is known, or the file is not there or not glTF.
+ * Parts of the file at \a path that export_gltf() does not write for a scene that was read from it, such as
+ * "2 variants of materials". Reads the file again. Empty: none, or the file is missing or not glTF.
  */
 [[nodiscard]] std::string left_out_of_export(const std::filesystem::path &path);
 

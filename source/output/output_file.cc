@@ -540,13 +540,12 @@ std::optional<FileId> file_id(const fs::path &path)
   return FileId{folder.st_dev, folder.st_ino, place.path.filename().string()};
 }
 
-std::string_view unreadable(const fs::path &path)
+void require_readable(const fs::path &path, const std::string &prefix)
 {
   Place place;
-  if (find_place(path, place) != 0 || !place.status || place.descriptor >= 0 || S_ISREG(place.status->st_mode)) {
-    return {};
+  if (find_place(path, place) == 0 && place.status && place.descriptor < 0 && !S_ISREG(place.status->st_mode)) {
+    throw std::runtime_error(prefix + (S_ISDIR(place.status->st_mode) ? "is a folder" : "is no regular file"));
   }
-  return S_ISDIR(place.status->st_mode) ? "is a folder" : "is no regular file";
 }
 
 }  // namespace gnomon::output

@@ -34,11 +34,11 @@ struct TransientError : Error {
 };
 
 /**
- * Why \a path is not opened to be read: "is a folder" or "is no regular file", since opening a pipe or a device may
- * never end. Empty for all others, also where there is no file, and for descriptors of the process, such as
- * `/dev/stdin` and what a shell writes for `<(…)`.
+ * \throws std::runtime_error, \a prefix and "is a folder" or "is no regular file": opening a pipe or a device may never
+ * end. Descriptors of the process are allowed, such as `/dev/stdin` and those that a shell makes for `<(…)`. A missing
+ * file is no error here.
  */
-[[nodiscard]] std::string_view unreadable(const std::filesystem::path &path);
+void require_readable(const std::filesystem::path &path, const std::string &prefix = {});
 
 /** Content that is being written. Positions count bytes from 0. */
 class Stream {

@@ -37,8 +37,7 @@ class Document {
 
   /** An imported scene, completed: without lamps and world, it gets studio lighting. */
   [[nodiscard]] static scene::Scene completed(scene::Scene scene);
-  /** Ends a transform. \return gltf::left_out_of_export() of the file that the scene is from \throws gltf::ExportError
-   */
+  /** Ends a transform. \return gltf::left_out_of_export() of the scene's file before \throws gltf::ExportError */
   std::string save(const std::filesystem::path &path);
 
   [[nodiscard]] const scene::Scene &scene() const

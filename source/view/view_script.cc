@@ -25,9 +25,7 @@ namespace {
 
 Script::Script(const std::filesystem::path &path) : path_(path)
 {
-  if (const std::string_view reason = output::unreadable(path); !reason.empty()) {
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), reason));
-  }
+  output::require_readable(path, path.string() + ": ");
   std::ifstream file(path);
   std::ostringstream text;
   // An empty file is an empty script, but the operator counts no characters as a failure.
