@@ -19,7 +19,7 @@ namespace {
 using test::HostMesh;
 using test::without_vertices;
 
-constexpr glm::ivec2 picture_size_px(48, 36);
+constexpr glm::ivec2 host_picture_size_px(48, 36);
 
 class EeveeHostResourcesTest : public test::HostFramebufferTest {
  protected:
@@ -49,7 +49,7 @@ class EeveeHostResourcesTest : public test::HostFramebufferTest {
   }
   std::vector<glm::vec4> drawn(const scene::Scene &of)
   {
-    SceneRenderer renderer(*device, of, picture_size_px, settings);
+    SceneRenderer renderer(*device, of, host_picture_size_px, settings);
     return drawn(renderer);
   }
 
@@ -73,7 +73,7 @@ TEST_P(EeveeHostResourcesTest, MeshesInTheHostsBuffersGiveThePictureOfUploadedOn
   scene::Scene host_scene = scene;
   host_scene.replace(ground, without_vertices(scene.meshes()[ground]));
   host_scene.replace(box, without_vertices(scene.meshes()[box]));
-  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, host_scene, host_picture_size_px, settings);
   EXPECT_NE(drawn(renderer), truth) << "nothing is drawn before the host names its buffers";
   renderer.render_scene().set_host_batch(ground, host_ground.batch);
   renderer.render_scene().set_host_batch(box, host_box.batch);
@@ -91,7 +91,7 @@ TEST_P(EeveeHostResourcesTest, OtherContentRedrawsShadowsAndRestartsThePicture)
   const HostMesh host_box(before);
   scene::Scene host_scene = scene;
   host_scene.replace(box, without_vertices(before));
-  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, host_scene, host_picture_size_px, settings);
   renderer.render_scene().set_host_batch(box, host_box.batch);
   EXPECT_EQ(drawn(renderer), drawn(scene));
   EXPECT_TRUE(renderer.draw_sample(camera)) << "the picture is complete";
@@ -137,7 +137,7 @@ TEST_P(EeveeHostResourcesTest, ATextureOfTheHostGivesThePictureOfAnUploadedImage
   const scene::Handle<scene::Image> image = scene.textures()[texture].image;
   host_scene.replace(image, scene::Image{"stand-in", 1, 1, {0, 0, 0, 255}});
   host_scene.edit(texture, [](scene::Texture &value) { value.mip = scene::MipFilter::Linear; });
-  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, host_scene, host_picture_size_px, settings);
   EXPECT_NE(drawn(renderer), truth);
   renderer.render_scene().set_host_texture(image, gpu::HostTexture{name, {2, 2}});
   EXPECT_EQ(drawn(renderer), truth);
@@ -180,7 +180,7 @@ TEST_P(EeveeHostResourcesTest, ShadowsFollowTheMaskInATextureOfTheHost)
   // The stand-in is transparent, so that the mask has an effect.
   const scene::Handle<scene::Image> image = scene.textures()[texture].image;
   scene.replace(image, scene::Image{"stand-in", 1, 1, {0, 0, 0, 0}});
-  SceneRenderer renderer(*device, scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, scene, host_picture_size_px, settings);
   const gpu::HostTexture host{name, {2, 2}};
   write(left);
   renderer.render_scene().set_host_texture(image, host);
@@ -197,7 +197,7 @@ TEST_P(EeveeHostResourcesTest, ABudgetedPictureConvergesToTheWholeOne)
   const HostMesh host_box(scene.meshes()[box]);
   scene::Scene host_scene = scene;
   host_scene.replace(box, without_vertices(scene.meshes()[box]));
-  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, host_scene, host_picture_size_px, settings);
   renderer.render_scene().set_host_batch(box, host_box.batch);
   // The smallest budget draws a preview first.
   int calls = 1;
@@ -213,7 +213,7 @@ TEST_P(EeveeHostResourcesTest, BuffersThatAreTooSmallAreNamedAndTheNextSyncIsWho
   const HostMesh host_box(scene.meshes()[box]);
   scene::Scene host_scene = scene;
   host_scene.replace(box, without_vertices(scene.meshes()[box]));
-  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, host_scene, host_picture_size_px, settings);
   gpu::HostBatch wrong = host_box.batch;
   wrong.vertex_count = 1000;
   renderer.render_scene().set_host_batch(box, wrong);
@@ -228,7 +228,7 @@ TEST_P(EeveeHostResourcesTest, FramesThatAnotherThreadPreparesDrawThemUntilTheir
   auto host_box = std::make_unique<HostMesh>(scene.meshes()[box]);
   scene::Scene host_scene = scene;
   host_scene.replace(box, without_vertices(scene.meshes()[box]));
-  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  SceneRenderer renderer(*device, host_scene, host_picture_size_px, settings);
   const auto prepare = [&](gpu::Packet &packet) {
     bool is_complete = false;
     std::thread([&] { is_complete = renderer.prepare(packet, camera); }).join();
