@@ -55,8 +55,6 @@ TEST_F(BenchTest, RecordCullAndImportCompareWithABaseline)
   };
   ASSERT_EQ(run("bench record --rounds 1 --json record.json").status, 0);
   check(json::parse(read("record.json"))["rows"], 4);
-  ASSERT_EQ(run("bench sync --rounds 1 --json sync.json").status, 0);
-  check(json::parse(read("sync.json"))["rows"], 5);
   for (const std::string group : {"cull", "import"}) {
     ASSERT_EQ(run("bench " + group + " --rounds 1 --count-max 1000 --json counts.json").status, 0);
     const json counts = json::parse(read("counts.json"))["counts"];
