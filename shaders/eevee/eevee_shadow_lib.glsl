@@ -54,16 +54,17 @@ const float CONTACT_ERROR_TEXELS = 0.1;
 const float SURFACE_HEIGHTS = 4.0;
 
 /**
- * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller and
- * the lower one of that from the texel \a outer to \a height and that to \a inner. Heights that are not above 0 are of no caster.
- * 0: unknown.
+ * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one
+ * of that from the texel \a outer to \a height and that to \a inner, and, where both fall, the one that falls faster. Texels of several
+ * panes, which are in no order, do not fall twice. Heights that are not above 0 are of no caster. 0: unknown.
  */
 vec2 caster_slopes(float outer, float height, float inner)
 {
   float to_inner = inner > 0.0 ? inner - height : 0.0;
   float from_outer = outer > 0.0 ? height - outer : to_inner;
   to_inner = inner > 0.0 ? to_inner : from_outer;
-  return vec2(abs(to_inner) < abs(from_outer) ? to_inner : from_outer, min(to_inner, from_outer));
+  float smaller = abs(to_inner) < abs(from_outer) ? to_inner : from_outer;
+  return vec2(smaller, max(to_inner, from_outer) < 0.0 ? min(to_inner, from_outer) : smaller);
 }
 
 /**
