@@ -54,17 +54,15 @@ const float CONTACT_ERROR_TEXELS = 0.1;
 const float SURFACE_HEIGHTS = 4.0;
 
 /**
- * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one
- * of that from the texel \a outer to \a height and that to \a inner, and, where both fall, the one that falls faster. Texels of several
- * panes, which are in no order, do not fall twice. Heights that are not above 0 are of no caster. 0: unknown.
+ * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
+ * that from the texel \a outer to \a height and that to \a inner. Heights that are not above 0 are of no caster. 0: unknown.
  */
-vec2 caster_slopes(float outer, float height, float inner)
+float caster_slope(float outer, float height, float inner)
 {
-  float to_inner = inner > 0.0 ? inner - height : 0.0;
-  float from_outer = outer > 0.0 ? height - outer : to_inner;
-  to_inner = inner > 0.0 ? to_inner : from_outer;
-  float smaller = abs(to_inner) < abs(from_outer) ? to_inner : from_outer;
-  return vec2(smaller, max(to_inner, from_outer) < 0.0 ? min(to_inner, from_outer) : smaller);
+  float from_outer = height - outer;
+  float to_inner = inner - height;
+  float slope = outer > 0.0 ? from_outer : 0.0;
+  return inner > 0.0 && (outer <= 0.0 || abs(to_inner) < abs(from_outer)) ? to_inner : slope;
 }
 
 /**
@@ -74,8 +72,6 @@ vec2 caster_slopes(float outer, float height, float inner)
  * such as the outer part of a wall which passes through a floor, or nothing. It is not beside the receiver. The caster is therefore
  * continued from its texel towards the others, along its own slope. Where it ends at the receiver's plane before a texel, a receiver on
  * its side of the end is in shadow, and a receiver beyond the end is lit. Edges of casters in front of the plane are blended.
- *
- * Where several casters meet, the lowest one shadows. It is the one that falls fastest.
  *
  * Beside casters, one texel at least must show the surface of the receiver. Otherwise the surface ends there, and the edge of the
  * casters is its own, as in a room whose walls share their edges.
@@ -115,13 +111,12 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   }
   vec2 inwards = 1.0 - fraction;
   // Slopes to the left in the upper and in the lower row, and from the upper to the lower one.
-  vec2 upper = caster_slopes(is_straight ? further.y : further.z, height.y, height.x);
-  vec2 down = is_straight ? vec2(height.z - height.y) : caster_slopes(further.x, height.y, height.z);
-  vec2 lower = is_straight ? caster_slopes(further.z, height.z, height.w) : upper;
-  float fall = min(upper.y, lower.y);
-  vec4 continued = height.y + vec4(fall, 0.0, down.y, down.y + fall);
-  float at_receiver = height.y + mix(down.x + lower.x * inwards.x, upper.x * inwards.x, fraction.y);
-  float error = CONTACT_ERROR_TEXELS * (max(abs(upper.x), abs(lower.x)) + (is_straight ? 0.0 : abs(down.x)));
+  float upper = caster_slope(is_straight ? further.y : further.z, height.y, height.x);
+  float down = is_straight ? height.z - height.y : caster_slope(further.x, height.y, height.z);
+  float lower = is_straight ? caster_slope(further.z, height.z, height.w) : upper;
+  vec4 continued = height.y + vec4(upper, 0.0, down, down + lower);
+  float at_receiver = height.y + mix(down + lower * inwards.x, upper * inwards.x, fraction.y);
+  float error = CONTACT_ERROR_TEXELS * (max(abs(upper), abs(lower)) + (is_straight ? 0.0 : abs(down)));
   vec4 is_lit = step(height, vec4(0.0));
   vec4 open = is_lit * step(vec4(1e-30), continued);
   bool is_edge = side != vec2(0.0);
