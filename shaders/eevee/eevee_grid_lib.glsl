@@ -21,7 +21,10 @@ void write_depth_on_plane(float least_px)
   vec2 slope = vec2(dFdx(depth) * up.y - dFdy(depth) * across.y, dFdy(depth) * across.x - dFdx(depth) * up.x) / area;
   vec2 moved_px = gl_FragCoord.xy - place_px;
   bool is_kept = grid_behind <= 0.0 && dot(moved_px, moved_px) <= least_px * least_px;
-  gl_FragDepth = gl_FragCoord.z + (has_area && !is_kept ? dot(slope, moved_px) : 0.0);
+  float change = dot(slope, moved_px);
+  // Neither infinite nor NaN, as where corners are far outside of the picture.
+  bool is_known = abs(change) <= 1.0;
+  gl_FragDepth = gl_FragCoord.z + (has_area && !is_kept && is_known ? change : 0.0);
   if (!has_area && grid_behind <= 0.0) {
     discard;
   }
