@@ -1,5 +1,8 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
+#ifdef HAS_COARSE_GRID
+#  include "eevee/eevee_grid_lib.glsl"
+#endif
 #ifdef USE_ALPHA_MASK
 #  include "eevee/eevee_mask_lib.glsl"
 #  ifdef USE_SURFACE_FUNCTION
@@ -12,6 +15,9 @@
 
 void main()
 {
+#ifdef HAS_COARSE_GRID
+  write_depth_on_plane(0.125);
+#endif
 #ifdef USE_ALPHA_MASK
 #  ifdef USE_SURFACE_FUNCTION
   bool is_open = edited_alpha() < materials[surface_material].mask_cutoff;

@@ -1,6 +1,9 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // Writes the properties of a surface that deferred lighting reads. \see eevee_deferred_lit_frag.glsl
+#ifdef HAS_COARSE_GRID
+#  include "eevee/eevee_grid_lib.glsl"
+#endif
 #include "eevee/eevee_gbuffer_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 #ifdef USE_CLIP_PLANES
@@ -14,6 +17,9 @@ layout(location = 0) out vec4 texel;
 
 void main()
 {
+#ifdef HAS_COARSE_GRID
+  write_depth_on_plane(0.125);
+#endif
   Surface surface = make_surface();
   uint bits = surface_material;
 #ifdef USE_SPECULAR

@@ -1,5 +1,8 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
+#ifdef HAS_COARSE_GRID
+#  include "eevee/eevee_grid_lib.glsl"
+#endif
 #include "eevee/eevee_material_lib.glsl"
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_lib.glsl"
@@ -33,6 +36,9 @@ layout(location = 0) out vec4 radiance;
 
 void main()
 {
+#ifdef HAS_COARSE_GRID
+  write_depth_on_plane(0.125);
+#endif
 #if defined(USE_SURFACE_FUNCTION)
   Surface surface = normal_mapped(make_surface());
   StandardSurface edited =

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "draw/draw_object_lib.glsl"
 #include "draw/draw_view_lib.glsl"
+#include "eevee/eevee_grid_vert_lib.glsl"
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_vert_lib.glsl"
 #elif defined(USE_BASE_COLOR_TEXTURE)
@@ -24,7 +25,7 @@ invariant gl_Position;
 void main()
 {
   vec4 position_ws = vertex_position_ws();
-  gl_Position = view.clip_from_world * position_ws;
+  gl_Position = placed_vertex(view.clip_from_world, position_ws, 2.0 / vec2(view.place_right.w, view.place_up.w));
 #if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   write_material_varyings();
 #  ifdef USE_FULL_MATERIAL

@@ -73,8 +73,13 @@ SHARED_ASSERT(UNIFORM_BLOCK_BYTES_MAX - sizeof(ShadowBlock) < sizeof(ShadowMapDa
 struct ShadowRenderBlock {
   /** One for each face of a cube or each cascade of a sun. A spot uses the first. */
   mat4 clip_from_world[6];
+  /** Edge of a layer. */
+  float size_px;
+  float _pad0;
+  float _pad1;
+  float _pad2;
 };
-SHARED_ASSERT_SIZE(ShadowRenderBlock, 384)
+SHARED_ASSERT_SIZE(ShadowRenderBlock, 400)
 
 /** Fraction of a face's width that its 90° cover: 1 minus the border. \a size_px: edge of the face, at least 1. */
 SHARED_FUNCTION float cube_uv_scale(float size_px)

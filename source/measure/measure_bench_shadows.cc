@@ -142,8 +142,10 @@ class LampBench {
     const auto views = eevee::shadow_cube_views(position_ws, 0.05F, settings_.cube_size_px);
     for (std::uint32_t face = 0; face < 6; face++) {
       face_block_ = {face_blocks_.id(), face * stride_, sizeof(shared::ShadowRenderBlock)};
-      const glm::mat4 &clip_from_world = views[face].clip_from_world();
-      list.update(face_blocks_, face_block_.offset_bytes, std::as_bytes(std::span(&clip_from_world, 1)));
+      shared::ShadowRenderBlock block{};
+      block.clip_from_world[0] = views[face].clip_from_world();
+      block.size_px = float(settings_.cube_size_px);
+      list.update(face_blocks_, face_block_.offset_bytes, std::as_bytes(std::span(&block, 1)));
       list.begin_pass("face", framebuffers_[face], {});
       pass_.record(views[face], list);
       list.end_pass();

@@ -168,6 +168,10 @@ constexpr auto shadow_fields = std::to_array<Field>({
 
 constexpr auto shadow_render_fields = std::to_array<Field>({
     {"shadow_render.clip_from_world", offsetof(ShadowRenderBlock, clip_from_world)},
+    {"shadow_render.size_px", offsetof(ShadowRenderBlock, size_px)},
+    {"shadow_render._pad0", offsetof(ShadowRenderBlock, _pad0)},
+    {"shadow_render._pad1", offsetof(ShadowRenderBlock, _pad1)},
+    {"shadow_render._pad2", offsetof(ShadowRenderBlock, _pad2)},
 });
 
 constexpr auto esm_fields = std::to_array<Field>({

@@ -62,7 +62,10 @@ enum class Feature : std::uint32_t {
    * as LampHighlights is of those with LampShape.
    */
   WorldOcclusion = 1U << 20,
-  /** The device moves vertices to a coarse grid (gpu::Limits::subpixel_bits). A constant of the G-buffer's program. */
+  /**
+   * The device moves vertices to a coarse grid (gpu::Limits::subpixel_bits). A constant of programs that draw surfaces
+   * and casters.
+   */
   CoarseGrid = 1U << 21,
   /** The view has clip planes. A constant of programs that write depths, or draw blended surfaces. */
   ClipPlanes = 1U << 22,

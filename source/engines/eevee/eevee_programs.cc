@@ -228,10 +228,15 @@ Feature constants_of(const ShaderDeclaration &declaration, Feature variant)
   const Feature lighting = (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
                            (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None);
   switch (declaration.id) {
-    case ShaderId::GBuffer: return lighting | Feature::ClipPlanes | Feature::CoarseGrid;
+    case ShaderId::GBuffer:
     case ShaderId::Depth:
     case ShaderId::DepthFunction:
-    case ShaderId::Lit: return lighting | Feature::ClipPlanes;
+    case ShaderId::Lit: return lighting | Feature::ClipPlanes | Feature::CoarseGrid;
+    case ShaderId::Shadow:
+    case ShaderId::ShadowLayered:
+    case ShaderId::Probe:
+    case ShaderId::DebugCascades:
+    case ShaderId::Surfaces: return lighting | Feature::CoarseGrid;
     default: return lighting;
   }
 }

@@ -196,6 +196,7 @@ static void write_render_block(const ShadowSlot &slot, const ShadowRecording &re
   for (std::size_t i = 0; i < slot.views.size(); i++) {
     block.clip_from_world[i] = slot.views[i].clip_from_world();
   }
+  block.size_px = float(slot.size_px);
   recording.list.update(recording.render_buffer, slot.render_offset_bytes, std::as_bytes(std::span(&block, 1)));
   recording.render_block = {recording.render_buffer.id(), slot.render_offset_bytes, sizeof(block)};
 }
