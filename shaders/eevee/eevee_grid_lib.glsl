@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders, where the device moves vertices to a coarse grid: what is interpolated is moved along.
+// For fragment shaders, where the device moves vertices to a coarse grid, and interpolated values with them.
 layout(location = 20) in vec4 grid_place;
 layout(location = 21) in float grid_behind;
 
