@@ -50,9 +50,6 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
 /** Error of a caster that is continued to the receiver, in texels. */
 const float CONTACT_ERROR_TEXELS = 0.1;
 
-/** A texel that is more than this times as far behind the receiver's plane as casters are in front of it shows another surface. */
-const float SURFACE_HEIGHTS = 4.0;
-
 /**
  * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
  * that from the texel \a outer to \a height and that to \a inner. Heights that are not above 0 are of no caster. 0: unknown.
@@ -72,9 +69,6 @@ float caster_slope(float outer, float height, float inner)
  * such as the outer part of a wall which passes through a floor, or nothing. It is not beside the receiver. The caster is therefore
  * continued from its texel towards the others, along its own slope. Where it ends at the receiver's plane before a texel, a receiver on
  * its side of the end is in shadow, and a receiver beyond the end is lit. Edges of casters in front of the plane are blended.
- *
- * Beside casters, one texel at least must show the surface of the receiver. Otherwise the surface ends there, and the edge of the
- * casters is its own, as in a room whose walls share their edges.
  */
 float receiver_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
 {
@@ -122,10 +116,6 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   bool is_edge = side != vec2(0.0);
   if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
     blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
-  }
-  float highest = max(max(height.x, height.y), max(height.z, height.w));
-  if (highest > 0.0 && dot(is_lit, step(vec4(-SURFACE_HEIGHTS * highest), height)) == 0.0) {
-    blend = 0.0;
   }
   return is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
 }

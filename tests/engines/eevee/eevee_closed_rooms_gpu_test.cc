@@ -307,15 +307,14 @@ void expect_dark(const Leaks &leaks, double shining_part_max, double pixels_part
 TEST_F(ClosedRoomsGpuTest, AreBlackExceptForFewPixels)
 {
   // The error of shadows grows with the size of texels.
-  expect_dark(leaks_of(0, room_pairs, 512), 0.2, 2.7e-3);
+  expect_dark(leaks_of(0, room_pairs, 512), 0.35, 4e-3);
 }
 
 class SlowClosedRoomsGpuTest : public ClosedRoomsGpuTest {};
 
 TEST_F(SlowClosedRoomsGpuTest, AreBlackExceptForFewPixels)
 {
-  // Two pictures, in which the world's light grazes a wall, have most of these pixels.
-  expect_dark(leaks_of(1000, 1000 + 4 * room_pairs, 0), 0.16, 4.3e-3);
+  expect_dark(leaks_of(1000, 1000 + 4 * room_pairs, 0), 0.25, 4e-3);
 }
 
 }  // namespace
