@@ -152,7 +152,7 @@ TEST(Workers, TheLimitIsOfCpuTime)
       2, limits,
       [](std::size_t index) {
         if (index == 0) {
-          // As on a machine that does other things.
+          // A waiting job uses no CPU time, as on a machine that is busy with other work.
           std::this_thread::sleep_for(std::chrono::milliseconds(600));
           return std::string("done");
         }

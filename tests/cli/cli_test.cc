@@ -236,7 +236,7 @@ TEST_F(CliTest, APipeOrDeviceIsRefusedWhereAFileIsRead)
       EXPECT_NE(finished.err.find(file + ": "), std::string::npos) << arguments << finished.err;
     }
   }
-  // What a shell writes for `<(…)` is read.
+  // The descriptor that a shell makes for `<(…)` is read.
   write("piped.sh", "#!/bin/bash\nexec '" GNOMON_PROGRAM "' \"$@\" --manifest <(echo '{')\n");
   std::filesystem::permissions(folder / "piped.sh", std::filesystem::perms::owner_all);
   EXPECT_NE(run("shaders check", folder / "piped.sh").err.find("parse error"), std::string::npos);

@@ -246,9 +246,9 @@ class LoopSteps : public TIntermTraverser {
   }
 
   std::set<std::string> stepped_;
-  /** What assignments by arithmetic read, by what they assign. */
+  /** By the value that an assignment by arithmetic sets: the values that it reads. */
   std::map<std::string, std::set<std::string>> arithmetic_;
-  /** What assignments assign, by what they read. */
+  /** By a value: the values that assignments compute from it. */
   std::map<std::string, std::set<std::string>> readers_;
 };
 
