@@ -2,11 +2,14 @@
 // `gnomon shaders check FILES`: what the program adds to check_program: names of files, outputs, processes, the cache.
 #include "cli_process.hh"
 #include "cli_workers.hh"
+#include "shader_check.hh"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <thread>
 
 namespace gnomon {
@@ -353,6 +356,9 @@ TEST_F(ShaderFilesTest, AManifestNamesProgramsPermutationsAndTargets)
 TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
 {
   const nlohmann::json schema = nlohmann::json::parse(std::ifstream(GNOMON_SOURCE "/doc/shader-manifest.schema.json"));
+  std::vector<std::string_view> stages;
+  std::ranges::transform(shader_check::stage_names(), std::back_inserter(stages), &shader_check::StageName::ending);
+  EXPECT_EQ(schema["$defs"]["file"]["oneOf"][1]["properties"]["stage"]["enum"], nlohmann::json(stages));
   write("lit.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
   write("lit.frag", fragment_head + "void main() { c = vec4(1); }\n");
   write("blur.comp", "#version 450\nlayout(local_size_x = 1) in;\nvoid main() {}\n");
