@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: whether the clip planes of the view leave this fragment out. The position follows from the depth, so that
-// passes with an equal-depth test need no planes.
-#include "draw/draw_view_lib.glsl"
+#ifdef USE_CLIP_PLANES
+#  include "draw/draw_view_lib.glsl"
+#endif
 
-bool is_clipped()
+/**
+ * For fragment shaders: discards the fragment if the clip planes of the view leave it out. Its position follows from the depth, so that
+ * passes with an equal-depth test need no planes. Does nothing without USE_CLIP_PLANES.
+ */
+void discard_clipped()
 {
+#ifdef USE_CLIP_PLANES
   for (int i = 0; i < 6; i++) {
     if (dot(view.clip_planes[i], vec4(gl_FragCoord.xyz, 1.0)) < 0.0) {
-      return true;
+      discard;
     }
   }
-  return false;
+#endif
 }

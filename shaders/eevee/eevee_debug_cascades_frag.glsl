@@ -1,9 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // Tint of the picture that shows which cascades of a sun each pixel reads, and how they blend. The picture is multiplied by it.
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_light_lib.glsl"
 #include "eevee/eevee_shadow_place_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
@@ -21,9 +19,7 @@ const vec3 CASCADE_TINTS[4] = vec3[4](vec3(1.0, 0.4, 0.4), vec3(0.4, 1.0, 0.4), 
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.125);
-#endif
   Surface surface = make_surface();
   LightData light = light_data.lights[tinted_light];
   int first = light.shadow_index;

@@ -1,23 +1,17 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #ifdef USE_ALPHA_MASK
 #  include "eevee/eevee_mask_lib.glsl"
 #  ifdef USE_SURFACE_FUNCTION
 #    include "eevee/eevee_surface_function_lib.glsl"
 #  endif
 #endif
-#ifdef USE_CLIP_PLANES
-#  include "draw/draw_clip_lib.glsl"
-#endif
+#include "draw/draw_clip_lib.glsl"
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.125);
-#endif
 #ifdef USE_ALPHA_MASK
 #  ifdef USE_SURFACE_FUNCTION
   bool is_open = edited_alpha() < materials[surface_material].mask_cutoff;
@@ -28,9 +22,5 @@ void main()
     discard;
   }
 #endif
-#ifdef USE_CLIP_PLANES
-  if (is_clipped()) {
-    discard;
-  }
-#endif
+  discard_clipped();
 }

@@ -1,14 +1,10 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // Writes the properties of a surface that deferred lighting reads. \see eevee_deferred_lit_frag.glsl
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_gbuffer_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
-#ifdef USE_CLIP_PLANES
-#  include "draw/draw_clip_lib.glsl"
-#endif
+#include "draw/draw_clip_lib.glsl"
 
 layout(location = 2) flat in uint surface_material;
 
@@ -17,9 +13,7 @@ layout(location = 0) out vec4 texel;
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.125);
-#endif
   Surface surface = make_surface();
   uint bits = surface_material;
 #ifdef USE_SPECULAR
@@ -33,9 +27,5 @@ void main()
 #endif
   texel = vec4(gbuffer_from_direction(surface.normal_ws), gbuffer_from_direction(surface.geometric_normal_ws),
                gbuffer_float(bits), depth);
-#ifdef USE_CLIP_PLANES
-  if (is_clipped()) {
-    discard;
-  }
-#endif
+  discard_clipped();
 }

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders, where the device moves vertices to a coarse grid, and interpolated values with them.
+// For fragment shaders: their depth, also where the device moves vertices to a coarse grid, and interpolated values with them.
+#ifdef HAS_COARSE_GRID
 layout(location = 20) in vec4 grid_place;
 layout(location = 21) in float grid_behind;
+#endif
 
 /**
  * Write the depth of the triangle's plane at the centre of the pixel. The interpolated one is that of another place of the plane, on
  * large triangles far from the pixel. If that place is within \a least_px, and no part of the triangle is behind the eye, the interpolated
  * depth is kept: where two surfaces touch, their edge would be moved less, but always into the smaller one. Discards triangles without
- * area, whose corners the grid moves out of their line.
+ * area, whose corners the grid moves out of their line. Does nothing on other devices.
  */
 void write_depth_on_plane(float least_px)
 {
+#ifdef HAS_COARSE_GRID
   vec2 place_px = grid_place.xy / grid_place.w;
   float depth = grid_place.z / grid_place.w;
   vec2 across = dFdx(place_px);
@@ -28,4 +31,5 @@ void write_depth_on_plane(float least_px)
   if (!has_area && grid_behind <= 0.0) {
     discard;
   }
+#endif
 }

@@ -1,8 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_material_lib.glsl"
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_lib.glsl"
@@ -28,17 +26,13 @@
 #ifdef USE_TRANSMISSION
 #  include "eevee/eevee_transmission_lib.glsl"
 #endif
-#ifdef USE_CLIP_PLANES
-#  include "draw/draw_clip_lib.glsl"
-#endif
+#include "draw/draw_clip_lib.glsl"
 
 layout(location = 0) out vec4 radiance;
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.125);
-#endif
 #if defined(USE_SURFACE_FUNCTION)
   Surface surface = normal_mapped(make_surface());
   StandardSurface edited =
@@ -107,9 +101,5 @@ void main()
     discard;
   }
 #endif
-#ifdef USE_CLIP_PLANES
-  if (is_clipped()) {
-    discard;
-  }
-#endif
+  discard_clipped();
 }

@@ -1,9 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // The engine's visibility of one lamp at each pixel, for comparison with the reference.
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_light_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 
@@ -18,9 +16,7 @@ layout(location = 1) out vec4 normal;
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.125);
-#endif
   Surface surface = make_surface();
   LightData light = light_data.lights[probed_light];
   vec3 to_light = light.kind == LIGHT_SUN ? -light.forward_ws : light.position_ws - surface.position_ws;

@@ -1,8 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #ifdef USE_ALPHA_MASK
 #  ifdef USE_OPACITY_THRESHOLD
 #    include "eevee/eevee_opacity_threshold_lib.glsl"
@@ -16,9 +14,7 @@
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.0);
-#endif
 #ifdef USE_ALPHA_MASK
 #  if defined(USE_SURFACE_FUNCTION) && defined(USE_OPACITY_THRESHOLD)
   bool is_open = is_let_through(edited_alpha());

@@ -1,9 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // Properties of surfaces without light, as layers for compositing.
-#ifdef HAS_COARSE_GRID
-#  include "eevee/eevee_grid_lib.glsl"
-#endif
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_material_lib.glsl"
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_lib.glsl"
@@ -29,9 +27,7 @@ layout(location = 2) out vec4 albedo_roughness;
 
 void main()
 {
-#ifdef HAS_COARSE_GRID
   write_depth_on_plane(0.125);
-#endif
   Surface surface = make_surface();
 #if defined(USE_SURFACE_FUNCTION)
   surface = normal_mapped(surface);

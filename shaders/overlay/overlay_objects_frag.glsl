@@ -4,9 +4,7 @@
 #ifdef USE_ALPHA_MASK
 #  include "eevee/eevee_alpha_lib.glsl"
 #endif
-#ifdef USE_CLIP_PLANES
-#  include "draw/draw_clip_lib.glsl"
-#endif
+#include "draw/draw_clip_lib.glsl"
 
 layout(location = 0) flat in uint surface_object;
 
@@ -21,9 +19,5 @@ void main()
     discard;
   }
 #endif
-#ifdef USE_CLIP_PLANES
-  if (is_clipped()) {
-    discard;
-  }
-#endif
+  discard_clipped();
 }

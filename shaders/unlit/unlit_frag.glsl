@@ -56,9 +56,7 @@ float opacity()
   return passes_light ? full_materials[surface_material].opacity : surface_opacity();
 }
 #endif
-#ifdef USE_CLIP_PLANES
-#  include "draw/draw_clip_lib.glsl"
-#endif
+#include "draw/draw_clip_lib.glsl"
 
 layout(location = 0) out vec4 radiance;
 
@@ -89,9 +87,5 @@ void main()
     discard;
   }
 #endif
-#ifdef USE_CLIP_PLANES
-  if (is_clipped()) {
-    discard;
-  }
-#endif
+  discard_clipped();
 }
