@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Highlights of lamps with an extent in a picture with several samples. Included by eevee_light_lib.glsl, after what both read.
 //
-// Each sample shades one point of the lamp. A lobe that contains few of all points would show each of them as a spot. It reflects the
-// whole lamp instead, in closed form, times the visibility of the point (Heitz, Hill and McGuire 2018). The lobes for which this is so
-// become narrower as the number of samples grows, so that pictures converge.
+// Each sample shades one point of the lamp. A narrow lobe, which contains few of all points, would show each of them as a spot.
+// Narrow lobes reflect the whole lamp instead, in closed form, times the visibility of the point (Heitz, Hill and McGuire 2018).
+// With more samples fewer lobes count as narrow, so that pictures converge.
 
 /**
- * Anisotropic lobes have no closed form. They are widened to at least this part of HighlightLamp::alpha_points, which is that of a lobe
- * with 12 points.
+ * Anisotropic lobes have no closed form. They are widened to at least this part of HighlightLamp::alpha_points: to a lobe that
+ * contains 12 points.
  */
 const float ANISOTROPIC_ALPHA_PART = 0.433;
 
@@ -58,7 +58,8 @@ float part_above(FlatLamp lamp)
   float y = abs(lamp.axis_y.z);
   float height = lamp.center.z;
   if (lamp.corner_count == RECTANGLE_CORNERS) {
-    // Integral of the part of a line that is above, by which the square of a sum cancels where an axis is parallel to the horizon.
+    // The part of the rectangle above the horizon, from squares of its corners' heights. They cancel if an axis is parallel to the
+    // horizon, therefore both axes have a least length.
     float least = max(1e-3 * (x + y), 1e-20);
     x = max(x, least);
     y = max(y, least);
@@ -73,7 +74,7 @@ float part_above(FlatLamp lamp)
 
 /**
  * Specular radiance towards the viewer from the whole lamp, times \a share, without a shadow, W/(sr m²). \a cos_l: cosine of the light
- * from the sampled point. Samples whose point is below the horizon have no visibility, so the others stand for them.
+ * from the sampled point. Points below the horizon have no visibility; the other points represent them.
  */
 vec3 lamp_highlight(HighlightLamp lamp, MaterialData material, Surface surface, ShapeShading shading, float share, float cos_l)
 {

@@ -34,10 +34,10 @@ vec2 mask_offset_px(vec2 across, vec2 up)
 }
 
 /**
- * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is the same all around it, the pixel is covered as often as
- * the texels in it: levels above 0 of a mask's texture store the covered share. Elsewhere, such as at the edge of a shape that is larger
- * than the pixel, it is covered as its middle is, which has half of the error and the right mean (\see mask_offset_px). A mask is the same
- * all around if its shares over 1 pixel, over 4 and over the distance between samples are alike, or if those over 4, 8 and 16 pixels are
+ * is_cut_out in a pixel. Where the pixel is larger than texels and the mask is uniform around it, the pixel is covered with the
+ * probability that the texture's levels above 0 store, the covered share. Elsewhere, such as at the edge of a shape that is larger than
+ * the pixel, the mask at the pixel's middle decides, which has half of the error and the right mean (\see mask_offset_px). A mask is
+ * uniform if its shares over 1 pixel, over 4 and over the distance between samples are alike, or if those over 4, 8 and 16 pixels are
  * equal: a weight that varied with the mask's own pattern within a pixel would change the mean.
  */
 bool is_pixel_cut_out(float mask_cutoff)

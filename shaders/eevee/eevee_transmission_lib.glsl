@@ -94,7 +94,7 @@ struct Way {
 
 /**
  * Let the light pass a surface of a body. \a normal_ws: towards the ray's origin. \a roughness: 0 unless the picture has several
- * samples, in each of which it meets another microfacet. \return what the microfacets do not shadow; 0 if no light passes
+ * samples. Each sample then meets another microfacet. \return the share that microfacets do not shadow; 0 if no light passes
  */
 float refracted(inout Way way, vec3 normal_ws, bool is_front, float ior, float roughness, uint number)
 {

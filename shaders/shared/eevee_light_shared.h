@@ -18,8 +18,8 @@ SHARED_BEGIN
 /** A sampled point of an emissive surface, which emits to both sides. */
 #define LIGHT_SURFACE 7
 /**
- * Specular lobes for such points are widened until they contain this number of the points of all samples. Around the lit point, the
- * points are assumed to be as dense in all directions as in that of the sampled one.
+ * Specular lobes for such points are widened until they contain this number of the points of all samples. The density of points around
+ * the lit point is assumed to be equal in all directions.
  */
 #define SURFACE_LOBE_POINTS 12.0f
 /**

@@ -38,8 +38,8 @@ struct NonFinite {
 void write_json(const std::filesystem::path &path, const nlohmann::json &json, int indent = 2);
 
 /**
- * If an output of \a files is the pipe or file of standard output, as with `--json /dev/stdout`, what is printed to
- * stdout goes to stderr from now on.
+ * If an output of \a files is standard output itself, as with `--json /dev/stdout`, text for stdout goes to stderr from
+ * now on.
  */
 void keep_text_from(const output::Roles &files);
 

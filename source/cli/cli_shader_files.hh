@@ -22,8 +22,8 @@ namespace gnomon::cli {
 void add_file(std::vector<shader_check::Program> &programs, shader_check::Stage stage, const std::string &file);
 
 /**
- * Adds to each program the files beside its own whose stages are between its first and its last: without those the
- * interfaces of the given ones do not meet. Where a stage that every pipeline needs is missing, the program becomes
+ * Adds to each program the files beside its own with stages between its first and its last, because the interfaces of
+ * the given files do not meet without them. Where a stage that every pipeline needs is missing, the program becomes
  * two.
  */
 void complete(std::vector<shader_check::Program> &programs);

@@ -79,8 +79,8 @@ struct Target {
   glm::ivec2 origin_px{0};
   /**
    * Size of the picture in the framebuffer, pixels; 0: that of the viewport. In another size, colour and alpha are
-   * interpolated between the four nearest pixels. Depth is not: a pixel has that of the picture's pixel which contains
-   * its centre, because a mean of two surfaces' depths is that of neither.
+   * interpolated between the four nearest pixels. Depth is taken from the nearest pixel, because a mean of two
+   * surfaces' depths lies on neither.
    */
   glm::ivec2 size_px{0};
   Encoding encoding = Encoding::Display;

@@ -50,7 +50,7 @@ struct Lens {
   int blades = 0;
   /** Angle from +X of view space to the middle of an edge of the polygon, counter-clockwise, radians. */
   float rotation = 0.0F;
-  /** Height of the aperture over its width. */
+  /** Height of the aperture over its width, above 0. */
   float ratio = 1.0F;
 
   bool operator==(const Lens &) const = default;

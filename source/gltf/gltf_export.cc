@@ -118,7 +118,7 @@ class SceneWriter {
   /** Index in copies_; -1: the mesh of the node is written as it stands, because its joints cannot be copied. */
   std::map<Handle<Node>, int> copy_of_;
 
-  /** Whether the importer would add the node again: it added it to a file without a camera or a lamp, and as it is. */
+  /** Whether the node is the unchanged camera or lamp that the importer adds to a file without one. */
   [[nodiscard]] bool is_made_up(Handle<Node> handle, const Node &node) const
   {
     if (node.name != default_name || !node.meshes.empty() || scene_.parent(handle) || scene_.first_child(handle)) {

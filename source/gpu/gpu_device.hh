@@ -38,7 +38,10 @@ class TimerQuery : public Resource {
 /** Number of passes by name. */
 using PassCounts = std::map<std::string, std::uint64_t, std::less<>>;
 
-/** Receives warnings from the driver and from the device, one line each. It must not throw. Empty: they are printed. */
+/**
+ * Receives warnings from the driver and from the device, one line each, on any thread that calls the device. It must
+ * not throw. Empty: they are printed to stderr.
+ */
 using MessageSink = std::function<void(std::string_view message)>;
 
 /** Gives \a text to \a sink, or prints it to stderr if the sink is empty. */
@@ -100,8 +103,8 @@ class Device {
                                      const ShaderReflection &reflection, const ShaderFiles &stand_in = {});
   /**
    * The program of \a desc, which all users on this device share. If the device has none, or lost the packet that
-   * created it, \a make creates it. \a text: what the program depends on besides \a desc, such as the text of a
-   * function; equal arguments must mean equal programs.
+   * created it, \a make creates it. \a text: further sources of the program, such as the text of a function; equal
+   * arguments must mean equal programs.
    *
    * A program without users is kept for the next one: the device keeps the unused_shader_max that were asked for last.
    */
@@ -200,7 +203,7 @@ class Device {
   /** Wait until all submitted work is done. Device's thread. */
   virtual void finish() = 0;
   /**
-   * Give back the memory that destroyed resources have left: what the driver still refers to, and free pages of the
+   * Give back the memory of destroyed resources: resources to which the driver still refers, and free pages of the
    * process. Takes some milliseconds and waits for the device. Call it after the resources of a scene were destroyed;
    * SceneRenderer does. Does nothing during a recording, and where the backend cannot be called.
    */

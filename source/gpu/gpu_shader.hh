@@ -13,7 +13,10 @@
 
 namespace gnomon::gpu {
 
-/** Returns the text of the shader file at \a path, relative to `shaders/`; empty if the file does not exist. */
+/**
+ * Returns the text of the shader file at \a path, relative to `shaders/`; empty if the file does not exist. The text
+ * must stay valid as long as a copy of the function exists. It is called on the thread of the call that needs the text.
+ */
 using ShaderFiles = std::function<std::optional<std::string_view>(std::string_view path)>;
 
 /** Returns the path that `#include "NAMED"` in the file \a includer refers to, where NAMED is \a named. */
@@ -70,7 +73,7 @@ struct ShaderInterface {
     int slot = 0;
     /** Blocks: std140 size. Textures: 0. */
     std::uint32_t size_bytes = 0;
-    /** Blocks: sorted by offset. Of an array, only the first element is listed. Textures: empty. */
+    /** Blocks: sorted by offset. Arrays are listed by their first element. Textures: empty. */
     std::vector<Member> members;
     /** Mask of the stages that read the binding: bit 0 vertex, bit 1 geometry, bit 2 fragment; 0: unknown. */
     std::uint32_t stages = 0;
@@ -105,7 +108,7 @@ struct ShaderInterface {
 /** Layout of a block in C++. shader_check compares it with the layout in GLSL. */
 struct BlockLayout {
   struct Field {
-    /** Path as in ShaderInterface::Member. Of an array, the first element: `light_data.lights[0].color`. */
+    /** Path as in ShaderInterface::Member. Arrays have their first element: `light_data.lights[0].color`. */
     std::string_view name;
     std::size_t offset_bytes;
   };
@@ -208,7 +211,7 @@ struct StageConstant {
 /**
  * Returns the interface of the program \a name with these \a stages, or throws Error. The engines' shaders use a table
  * that the build generates (gpu_interface_table.hh). For shaders that are known only at run time, use
- * shader_check::reflect from the library gnomon::shader_check.
+ * shader_check::reflect from the library gnomon::shader_check. It is called on the thread of the call that needs it.
  */
 using ShaderReflection = std::function<ShaderInterface(std::string_view name, const std::vector<ShaderSource> &stages)>;
 

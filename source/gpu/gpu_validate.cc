@@ -91,7 +91,7 @@ class Validator {
         pass_ = nullptr;
         break;
       case CommandKind::SetShader: shader_ = &live(ResourceKind::Shader, command.id); break;
-      case CommandKind::SetState: has_state_ = true; break;
+      case CommandKind::SetState: set_state(State(command.first)); break;
       case CommandKind::BindUniform: bind_buffer(command, BufferKind::Uniform, uniforms_); break;
       case CommandKind::BindStorage: bind_buffer(command, BufferKind::Storage, storages_); break;
       case CommandKind::BindTexture: bind_texture(command); break;
@@ -236,6 +236,14 @@ class Validator {
     const auto &range = std::get<BatchRange>(host_batch_->desc);
     return draw.base_vertex == 0 && draw.first_index >= range.first_index &&
            std::size_t(draw.first_index) + draw.index_count <= std::size_t(range.first_index) + range.index_count;
+  }
+
+  void set_state(State state)
+  {
+    if (has(state, State::Wireframe) && !device_.limits().has_wireframe) {
+      fail("this device draws no triangles as their edges (Limits::has_wireframe)");
+    }
+    has_state_ = true;
   }
 
   void check_draw_state() const

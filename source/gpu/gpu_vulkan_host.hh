@@ -20,8 +20,9 @@ struct VkPhysicalDeviceFeatures2;
 namespace gnomon::gpu {
 
 /**
- * A VkDevice of the host, which must outlive the Device that uses it. Nothing of it is changed or destroyed. What the
- * Device needs is in doc/vulkan.md, "What it needs".
+ * A VkDevice of the host, which must outlive the Device that uses it. Nothing of it is changed or destroyed. The
+ * features and extensions that the Device needs are in doc/vulkan.md, "Hosts"; create_vulkan_device names those that
+ * are missing.
  */
 struct VulkanHost {
   /** The host's vkGetInstanceProcAddr. */
@@ -34,8 +35,8 @@ struct VulkanHost {
   VkQueue_T *queue = nullptr;
   std::uint32_t queue_family = 0;
   /**
-   * The features that the host has enabled, as in VkDeviceCreateInfo::pNext. Of the chain, the structures of Vulkan 1.2
-   * and 1.3, the ones that these replace, and that of VK_EXT_provoking_vertex are read, when the Device is made.
+   * The features that the host has enabled, as in VkDeviceCreateInfo::pNext. The Device reads the structures of Vulkan
+   * 1.2 and 1.3, the ones that these replace, and that of VK_EXT_provoking_vertex when it is made.
    */
   const VkPhysicalDeviceFeatures2 *features = nullptr;
   /** The extensions of the device that the host has enabled. */

@@ -82,7 +82,7 @@ void multiply(std::array<double, 3> &exposure, std::string_view numbers)
 /** Least number of bytes that store a line of \a length pixels. */
 std::uint64_t line_bytes_min(std::uint64_t length)
 {
-  // A pixel, and another one that repeats it 255 times, and others that repeat it 256 times as often.
+  // The shortest encoding: one pixel, a run of 255 of it, and runs that are 256 times as long. Four bytes each.
   return length == 1 ? 4 : length <= 256 ? 8 : 12;
 }
 

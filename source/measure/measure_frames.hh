@@ -45,8 +45,8 @@ struct FrameTimes {
   std::vector<double> moved_lamp;
   /**
    * Multiplications that take about as long as a frame of moved_lamp, on all cores, after every fifth frame: the least
-   * that the machine adds to work of that length. Of numbers in 16 KiB for each core, in 512 KiB, and in 16 MiB, which
-   * caches do not keep.
+   * that the machine adds to work of that length. The numbers are in arrays of 16 KiB for each core, of 512 KiB, and of
+   * 16 MiB, which caches do not keep.
    */
   std::vector<double> small_arithmetic;
   std::vector<double> large_arithmetic;

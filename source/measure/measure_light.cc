@@ -62,7 +62,7 @@ glm::dvec3 nearest_point(const LampShape &lamp, const glm::dvec3 &direction)
   return lamp.center + at.x * lamp.axis_x + at.y * lamp.axis_y;
 }
 
-/** The angle, or for flat lamps the solid angle, by half of which a lamp widens a lobe in \see point_specular. */
+/** Angle of a lamp; solid angle of a flat lamp. Half of it widens a lobe. \see point_specular */
 double extent(const LampShape &lamp)
 {
   if (lamp.outline == LampOutline::Round) {
@@ -84,7 +84,7 @@ double lobe_cosine(const SpecularLobe &lobe, const glm::dvec3 &to_light)
 
 }  // namespace
 
-/** The texel of \a table at \a texel, whose middles are at whole numbers. */
+/** Bilinear lookup in \a table. Centres of texels are at whole numbers of \a texel. */
 static glm::vec4 filtered(std::span<const float> table, const glm::ivec2 &size, const vec2 &texel)
 {
   const glm::ivec2 low(glm::floor(texel));

@@ -132,8 +132,7 @@ template <typename Value>
   }
 }
 
-/** \a set as a Value. \a also: what else it may be, which the caller has found that it is not. \throws py::type_error
- */
+/** \a set as a Value. \a also: other types that the property takes, for the message. \throws py::type_error */
 template <typename Value>
 [[nodiscard]] Value cast_to(py::handle set, std::string_view also = "")
 {

@@ -100,7 +100,7 @@ class Tracer {
   Tracer(const Tracer &) = delete;
   Tracer &operator=(const Tracer &) = delete;
 
-  /** The nearest hit. Of several hits at the same t, the triangle that comes first in the scene. */
+  /** The nearest hit. If several triangles are hit at the same t, the first of them in the scene. */
   [[nodiscard]] std::optional<Hit> closest(const Ray &ray, Faces faces) const;
 
   /**

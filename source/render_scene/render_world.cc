@@ -379,8 +379,8 @@ WorldLight world_light(const scene::World &world)
   std::ranges::sort(patches, std::ranges::greater(), &Patch::light);
   for (Patch &patch : patches) {
     const double share = patch.light / (4.0 * pi * mean);
-    // A sun must give at least 5 % of the light and be at most 40° wide (0.38 sr). Each sun is as much work as others,
-    // and the rest lights as well what gives less.
+    // A sun must give at least 5 % of the light and be at most 40° wide (0.38 sr). Dimmer patches stay in the rest,
+    // because each sun costs the same.
     if (share < 0.05 || patch.solid_angle() > 0.38 || int(light.suns.size()) == WorldLight::sun_max) {
       continue;
     }

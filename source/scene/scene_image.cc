@@ -311,9 +311,9 @@ class FilteredCover {
 };
 
 /**
- * Decides which texels are covered: those of a part of a half or more; where that would change the covered part of the
- * image, as grass and nets do, what a texel has too much or too little goes to its neighbours (Floyd and Steinberg,
- * 1976). A texel of which no part is covered has no color for it.
+ * Decides which texels are covered: those with a covered share of at least a half. \a is_diffused: the error of each
+ * texel goes to its neighbours (Floyd and Steinberg, 1976), which keeps the covered share of pictures of grass and
+ * nets. A texel with share 0 is never covered, because it has no color.
  */
 static std::vector<bool> covered_texels(const std::vector<float> &parts, std::size_t width, bool is_diffused)
 {
@@ -351,8 +351,8 @@ static std::vector<bool> covered_texels(const std::vector<float> &parts, std::si
 }
 
 /**
- * Texels of which no part is covered have the mean colour of the neighbours that have one, so that a filter between
- * them mixes in no colour that is not seen. The texels repeat.
+ * Gives texels without a covered share the mean colour of their neighbours with one, so that a filter between them
+ * mixes in no hidden colour. The texels repeat.
  */
 static void fill_uncovered(Image &image, const std::vector<float> &parts)
 {
@@ -384,10 +384,9 @@ static void fill_uncovered(Image &image, const std::vector<float> &parts)
 }
 
 /**
- * Sets the alphas of a reduced mask, whose texels are covered or not, and \a parts are not. They are the part, as far
- * above the cutoff as a half. \a wanted: the covered part of the image. Where the covered part of the image would
- * change, by texels or by a linear filter between them, texels have one of two alphas, so that the filter shows that
- * part.
+ * Sets the alphas of a reduced mask from \a parts, the covered shares of its texels, so that a share of a half is at
+ * the cutoff. \a wanted: the covered share of the image. If texels or a linear filter between them would cover another
+ * share, texels get one of two alphas instead, so that the filter covers that share.
  */
 static void cover(Image &image, const std::vector<float> &parts, double wanted, float cutoff)
 {

@@ -11,8 +11,8 @@
 namespace gnomon::scene {
 
 /**
- * The use of the image of one of the material's slots. Coverage and Mask: the base colour of a surface without a
- * surface function, which may show what alpha hides.
+ * The use of the image of one of the material's slots. A base colour is Coverage or Mask if alpha hides texels of it; a
+ * surface function may read hidden texels, therefore its base colour is neither.
  */
 [[nodiscard]] ImageUse use_of(const Material &material, const TextureInput &input);
 
@@ -32,11 +32,11 @@ namespace gnomon::scene {
 
 /**
  * The texels of all mip levels, the finest first, for ImageUse::Coverage, or for ImageUse::Mask if \a mask has a
- * cutoff. A texel of a level has the mean of the colours that it covers, weighted by what they cover, and the covered
- * part. A texel of the image covers the part alpha; of a mask, what \a mask says, with a colour if its own alpha is at
- * least the cutoff. Texels without a colour, and those of the image without alpha, have the colour of the next coarser
- * level that has one, so that filters between texels mix in no colour that is not seen. The texels repeat. Edges are
- * halved and rounded down.
+ * cutoff. A texel of a level stores its covered share as alpha, and the mean colour of its covered texels, weighted by
+ * their shares. A texel of the image covers the share alpha; in a mask, the share that \a mask gives, and it has a
+ * colour if its own alpha is at least the cutoff. Texels without a colour, and texels of the image with alpha 0, have
+ * the colour of the next coarser level that has one, so that filters between texels mix in no hidden colour. The texels
+ * repeat. Edges are halved and rounded down.
  */
 [[nodiscard]] std::vector<std::uint8_t> coverage_levels(const Image &image, const MaskCover &mask = {});
 

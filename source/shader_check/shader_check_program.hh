@@ -23,7 +23,7 @@ struct ProgramBinding {
     std::uint32_t stride_bytes = 0;
   };
   struct Member {
-    /** Path in the block, such as `lights[0].color`. Of an array of structs, the first element stands for all. */
+    /** Path in the block, such as `lights[0].color`. An array of structs is listed by its first element. */
     std::string name;
     /** GLSL's name of the type. */
     std::string type;
@@ -60,8 +60,8 @@ struct ProgramInterface {
   std::vector<StageVariable> inputs;
   std::vector<StageVariable> outputs;
   /**
-   * Those outside of blocks that a stage uses, sorted by location. Only OpenGL has them. Of structs each member, such
-   * as `lights[0].color`; of an array of structs, the first element stands for all.
+   * Those outside of blocks that a stage uses, sorted by location. Only OpenGL has them. Structs are listed by their
+   * members, such as `lights[0].color`, and an array of structs by its first element.
    */
   std::vector<StageVariable> uniforms;
   /** Those that a stage uses, sorted by kind, set, slot and name. */

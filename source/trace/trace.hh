@@ -30,7 +30,7 @@ void start();
 /** The spans that have ended since start(), in the order of their ends. */
 [[nodiscard]] std::vector<Event> events();
 
-/** CPU time of all threads of the process until now, s. Before a process makes threads: what its start has taken. */
+/** CPU time of all threads of the process until now, s. */
 [[nodiscard]] double process_seconds();
 
 /** Records the time from its construction to its destruction, on one thread. */

@@ -164,6 +164,23 @@ TEST_F(Validation, ShaderAndStateAreSet)
                  {"pass 'second'", "no state is set in this pass"});
 }
 
+TEST_F(Validation, AWireframeNeedsADeviceThatDrawsEdges)
+{
+  const auto wireframe = [&] { list.set_state(State::WriteColor | State::Wireframe); };
+  record({.at_state = wireframe});
+  EXPECT_EQ(error_of([&] { validate(list, *device); }), "");
+  const std::unique_ptr<Device> without = create_null_device({.has_wireframe = false});
+  const Texture target = without->create_texture({.name = "hdr", .width = 4, .height = 4});
+  const Framebuffer whole = without->create_framebuffer({"scene", {{&target}}, {}});
+  list.clear();
+  list.begin_pass("edges", whole, {});
+  wireframe();
+  list.end_pass();
+  const std::string message = error_of([&] { validate(list, *without); });
+  expect_contains(message, "pass 'edges'");
+  expect_contains(message, "has_wireframe");
+}
+
 TEST_F(Validation, DeclaredBindingsAreBound)
 {
   expect_refused({.at_uniform = [] {}}, {"(draw)", "shader 'reading'", "uniform 'light_block' at slot 9 is not bound"});

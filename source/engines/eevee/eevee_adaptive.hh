@@ -47,11 +47,6 @@ class AdaptiveSampling {
   void begin_picture();
 
   void report(ResourceReport &report) const;
-  /** Some pixels may get fewer samples than others. */
-  [[nodiscard]] bool has_maps() const
-  {
-    return bool(film_converged_);
-  }
   /** Converged pixels of the current picture are skipped. */
   [[nodiscard]] bool is_active() const
   {

@@ -46,13 +46,13 @@ struct BudgetReport {
  * which each lamp is shaded as a whole; it is scaled to the target. Lamps with a shadow size of their own
  * (scene::LampShadow) keep it. The first preview creates the engine, which compiles its programs.
  *
- * Later calls draw the samples of the picture, in parts. Until the first is whole, they show the preview again; after
- * stalled_calls_max calls that show the same preview, the next one draws the preview in the next larger size, or with
- * shadows of twice the edge, or lights the rest of the sample if that is less, whatever its time. So a picture of which
- * nothing changes gets better at any speed of the machine. The
- * complete picture is bit for bit that of draw::Viewport::draw. A sample in which something transmits light is lit in
- * one call, whatever its time. The set-up of a sample is divided into its depth and parts of shadows: layers, or
- * rows of large layers. The layers of one exponential shadow are drawn in one call.
+ * Later calls draw the samples of the picture, in parts. Until the first sample is whole, they show the preview again.
+ * After stalled_calls_max calls that show the same preview, the next call draws a better preview: in the next larger
+ * size, or with shadows of twice the edge. It lights the rest of the sample instead, if that is less work. Therefore
+ * the picture of a scene without changes gets better at any speed of the machine. The complete picture is bit for bit
+ * that of draw::Viewport::draw. A sample in which something transmits light is lit in one call, whatever its time. The
+ * set-up of a sample is divided into its depth and parts of shadows: layers, or rows of large layers. The layers of one
+ * exponential shadow are drawn in one call.
  *
  * Each call waits for the device, whose time it measures. One viewport, one object, the device's thread, no recording.
  */

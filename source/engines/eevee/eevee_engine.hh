@@ -52,7 +52,10 @@ class Engine final : public draw::Engine {
   {
   }
 
-  /** Set other settings. They take effect with the next draw::Viewport::sync, which must precede the next draw. */
+  /**
+   * Set other settings. They take effect with the next draw::Viewport::sync, which must precede the next draw. That
+   * sync throws gpu::Error, if a value is outside of the limits of its row.
+   */
   void set_settings(const Settings &settings)
   {
     settings_ = settings;
@@ -81,8 +84,9 @@ class Engine final : public draw::Engine {
   bool take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback) override;
 
   /**
-   * The scene-linear picture, RGBA32F, to be multiplied by radiance_scale. Pixels outside of draw::Viewport::region are
-   * undefined. \throws gpu::Error if the viewport was not synced since it was made or resized
+   * The scene-linear picture, RGBA32F, W/(sr m²), premultiplied by alpha, to be multiplied by radiance_scale; rows from
+   * the bottom. Pixels outside of draw::Viewport::region are undefined, and all pixels before the first draw. \throws
+   * gpu::Error if the viewport was not synced since it was made or resized
    */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
   /** Factor from radiance to the mean of the samples so far. 1 if the picture has Settings::sample_count samples. */

@@ -10,13 +10,13 @@ namespace gnomon::eevee {
 
 struct FrameStep;
 
-/** Checks what steps name as read and written against their command lists. Internal to the engine. */
+/** Checks the names of a step's reads and writes against its command list. Internal to the engine. */
 class FrameCheck {
  public:
   /**
-   * A step must name what its \a list writes, and what it reads that checked lists have written. Uploads, copies and
-   * read-backs are not in lists. \pre the list is valid on \a device
-   * \throws gpu::InternalError with the step and the resource
+   * \pre the list is valid on \a device
+   * \throws gpu::InternalError with the step and the resource, if \a list writes a resource, or reads one that an
+   * earlier list wrote, and \a step does not name it. Uploads, copies and read-backs are not in lists.
    */
   void check(const FrameStep &step, const gpu::CommandList &list, const gpu::Device &device);
 

@@ -59,8 +59,8 @@ struct Report {
  * Observes an engine in one viewport, for reports, tests, measurements and the shadow inspector of an editor. No
  * picture needs it. It holds two references only: construct one where it is used. \see SceneRenderer::inspect
  *
- * Call it on the device's thread. probe and shadow_picture submit work, and must not be called while the device records
- * a packet.
+ * Call it on the device's thread. probe, surfaces, texel_density and shadow_picture submit work, and must not be called
+ * while the device records a packet.
  */
 class Inspection {
  public:

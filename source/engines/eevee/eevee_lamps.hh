@@ -98,9 +98,9 @@ struct Lamps {
 };
 
 /**
- * The data of \a lamps. Lamps with has_cube are first. In both groups, those that reach everywhere are first; otherwise
- * they keep the order of \a lamps. Lamps that give no light (black, intensity 0, no area) get no entry, and those after
- * \a light_count_max lights neither.
+ * The data of \a lamps: lamps with has_cube, then the others. In each group, lamps without a range come first;
+ * otherwise the order of \a lamps is kept. Lamps that give no light (black, intensity 0, no area) and lamps after \a
+ * light_count_max lights get no entry.
  */
 [[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole,
                                std::size_t light_count_max = LIGHT_COUNT_MAX);
@@ -116,8 +116,8 @@ void set_highlights(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std
 void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind);
 
 /**
- * First indices of the handles of lamps without a node, by which their shadows are kept: those of the world and those
- * of emissive surfaces. Each range has 256 indices. No pool uses them.
+ * First indices of handles of lamps without a node: those of the world and those of emissive surfaces. Kept shadows are
+ * found by these handles. Each range has 256 indices. No pool uses them.
  */
 inline constexpr std::uint32_t world_node_first = 0xffffff00U;
 inline constexpr std::uint32_t emission_node_first = 0xfffffe00U;

@@ -59,8 +59,7 @@ class SceneLights {
     synced_.reset();
   }
   /**
-   * Create the buffers and textures that the features \a read need, and free those that they do not; then write the
-   * planned lights.
+   * Create the buffers and textures that the features \a read need, free the others, and write the planned lights.
    */
   void make(gpu::Device &device, const Settings &settings, Feature read);
   void bind(draw::ShadingGroup &group) const;

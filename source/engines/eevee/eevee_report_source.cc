@@ -99,8 +99,18 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
     case Feature::Layers:
       return source.data.is_recorded ? "no material has a coat, sheen or anisotropy, or transmits light" : nothing_seen;
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
-    default: return "";
+    // Answered above.
+    case Feature::Light:
+    case Feature::TargetDepth:
+    case Feature::Transmission:
+    // Constants of programs are not in reports.
+    case Feature::LampHighlights:
+    case Feature::WorldOcclusion:
+    case Feature::CoarseGrid:
+    case Feature::ClipPlanes:
+    case Feature::None: break;
   }
+  return "";
 }
 
 std::string why_no_program(const ReportSource &source, ShaderId id)
@@ -108,6 +118,7 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
   const std::string no_esm = why_no_feature(source, Feature::ShadowEsm);
   const std::string no_evsm = why_no_feature(source, Feature::ShadowEvsm);
   const std::string other_kernel = "exponential shadows use another filter";
+  const auto if_seen = [&](std::string why) { return source.data.is_recorded ? std::move(why) : nothing_seen; };
   switch (id) {
     case ShaderId::Probe: return source.settings.has_probe ? "no lamp was probed" : "not asked for";
     case ShaderId::Surfaces: return source.settings.has_surfaces ? nothing_seen : "not asked for";
@@ -120,31 +131,31 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
     case ShaderId::BackgroundWorld:
       return source.settings.background.kind == Background::Kind::None ? "no background was asked for" : nothing_seen;
     case ShaderId::Tonemap: return source.data.output.target() ? nothing_seen : no_target;
-    default: break;
-  }
-  if (!source.data.is_recorded) {
-    return nothing_seen;
-  }
-  switch (id) {
     case ShaderId::Shadow:
     case ShaderId::ShadowLayered:
     case ShaderId::ShadowGeometry:
-      return source.has(any_shadow) ? "another method draws the layers"
-                                    : why_no_shadow(source, "no lamp casts a shadow");
+      return if_seen(source.has(any_shadow) ? "another method draws the layers"
+                                            : why_no_shadow(source, "no lamp casts a shadow"));
     case ShaderId::EsmDistance:
     case ShaderId::EsmDisk4:
     case ShaderId::EsmDisk32:
-    case ShaderId::EsmSeparable: return source.has(Feature::ShadowEsm) ? other_kernel : no_esm;
+    case ShaderId::EsmSeparable: return if_seen(source.has(Feature::ShadowEsm) ? other_kernel : no_esm);
     case ShaderId::EvsmDisk4:
     case ShaderId::EvsmDisk32:
-    case ShaderId::EvsmSeparable: return source.has(Feature::ShadowEvsm) ? other_kernel : no_evsm;
-    case ShaderId::DepthFunction: return "no surface function can cut a material out";
+    case ShaderId::EvsmSeparable: return if_seen(source.has(Feature::ShadowEvsm) ? other_kernel : no_evsm);
+    case ShaderId::DepthFunction: return if_seen("no surface function can cut a material out");
     case ShaderId::Depth:
-    case ShaderId::Lit: return source.data.depth.has_gbuffer() ? std::string(all_in_gbuffer) : nothing_seen;
+    case ShaderId::Lit: return if_seen(source.data.depth.has_gbuffer() ? std::string(all_in_gbuffer) : nothing_seen);
     case ShaderId::GBuffer:
-    case ShaderId::DeferredLit: return std::string(why_forward);
-    default: return nothing_seen;
+    case ShaderId::DeferredLit: return if_seen(std::string(why_forward));
+    case ShaderId::AdaptiveTest:
+    case ShaderId::AdaptiveSpread:
+    case ShaderId::AdaptiveDepth:
+    case ShaderId::AdaptiveScale:
+      return source.settings.noise_threshold > 0.0F ? "all pixels get all samples" : "not asked for";
+    case ShaderId::Film: return nothing_seen;
   }
+  return nothing_seen;
 }
 
 }  // namespace gnomon::eevee

@@ -108,8 +108,8 @@ class SceneRenderer {
    */
   int draw_moving(const Pose &pose, const DrawLimits &limits = {}, const draw::Target &target = {});
   /**
-   * The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. Pixels outside
-   * of draw::Viewport::region are undefined.
+   * The mean of the samples drawn so far: scene-linear RGBA, W/(sr m²), premultiplied by alpha, rows from the bottom.
+   * Waits for the device. Pixels outside of draw::Viewport::region are undefined.
    * \throws gpu::Error if no sample is drawn since the picture started; a preview of draw_within is no sample
    */
   [[nodiscard]] std::vector<glm::vec4> read_picture();

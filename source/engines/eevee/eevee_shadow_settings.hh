@@ -71,8 +71,8 @@ inline constexpr double texel_in_pixels = 0.125;
 /** The distribution of a sun's cascades over the visible range. */
 struct CascadeSettings {
   /**
-   * Number of cascades, 1 to cascade_count_max. 0: the smallest number for which texels are no larger than pixels, or
-   * texel_in_pixels_max if they are fitted to depths; at most cascade_count_max.
+   * Number of cascades, 1 to cascade_count_max. 0: the fewest with texels no larger than a pixel, or than
+   * texel_in_pixels_max if cascades are fitted to depths.
    */
   int count = 0;
   /** Blend of uniform splits (0) and logarithmic splits (1) of the distance. \see cascade_splits */

@@ -80,7 +80,8 @@ class Engine final : public draw::Engine {
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
 
   /**
-   * The scene-linear picture and its guard band (draw::Viewport::drawn_size_px), RGBA16F.
+   * The scene-linear picture and its guard band (draw::Viewport::drawn_size_px), RGBA16F, premultiplied by alpha; rows
+   * from the bottom.
    * \throws gpu::Error if the viewport was not drawn since it was made or resized
    */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;

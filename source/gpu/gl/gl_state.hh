@@ -32,7 +32,7 @@ enum class PixelTransfer { Pack, Unpack };
  *
  * A name that the host has deleted while it was bound, perhaps in a context that shares objects with this one, cannot
  * be bound again. Neither can a program that is flagged for deletion, unless another context uses it, or one that did
- * not link a second time. What cannot be bound again is left unbound. No call here makes an error of OpenGL for it.
+ * not link a second time. Such bindings are left empty, and no call here raises an error of OpenGL.
  *
  * A name that is free again may be given to another object, therefore names are looked up before the device changes
  * anything.

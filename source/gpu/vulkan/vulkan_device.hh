@@ -104,7 +104,7 @@ class VulkanDevice final : public Device {
   };
   /** Placeholders for bindings that a list does not set: black texels, and zeros. */
   struct Dummies {
-    /** Indexed by whether they are of depths. Of one layer; the view is of an array. */
+    /** Index 0: colours; 1: depths. Each image has one layer, and its view is that of an array. */
     std::array<VulkanImage, 2> images;
     std::array<VkImageView, 2> flat_views{};
     std::array<VkSampler, 2> samplers{};

@@ -352,6 +352,9 @@ TEST_F(LeftOut, TheTreeGivesTheReason)
     EXPECT_EQ(node.why, reason) << name << ": " << path.back();
     EXPECT_TRUE(node_at(taken.at("full").tree, path).is_made) << path.back();
   };
+  for (const char *program : {"eevee_adaptive_test", "eevee_adaptive_scale", "eevee_probe", "eevee_surfaces"}) {
+    EXPECT_EQ(node_at(taken.at("full").tree, {"programs", program}).why, "not asked for") << program;
+  }
   expect_reason("no lamp", {"programs", "features", "USE_LIGHT"}, "no lamp gives light");
   expect_reason("no lamp", {"targets", "shadow_maps"}, "no lamp gives light");
   expect_reason("no lamp", {"textures", "checks"}, "no lamp lights it, and it cuts nothing out");
