@@ -112,7 +112,7 @@ FrameStep BlendPass::behind_step()
                                             "blended objects that are seen through others",
                                             "no blended object is behind all that transmits light");
               },
-          .reads = lit_reads(),
+          .reads = forward_reads(),
           .writes = {"radiance"},
           .passes = {{&pass_, "blended objects that are seen through others"}},
           .record =
@@ -134,7 +134,7 @@ FrameStep BlendPass::step()
                        : pass_.is_empty() ? Need{false, "no material that is drawn is blended"}
                                           : Need{true, "blended objects, from back to front"};
               },
-          .reads = lit_reads(),
+          .reads = forward_reads(),
           .writes = {"radiance"},
           .passes = {{&pass_, "blended objects, from back to front"}},
           .record =

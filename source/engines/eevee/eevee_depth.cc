@@ -186,7 +186,7 @@ FrameStep DepthPasses::lighting_step()
                 const Need need = need_gbuffer(state);
                 return need.is_needed ? Need{true, "pixels of the G-buffer"} : need;
               },
-          .reads = lit_reads(),
+          .reads = deferred_reads(),
           .writes = {"radiance"},
           .passes = {{&lighting_pass_, "pixels of the G-buffer", why_in_gbuffer}},
           .record =

@@ -41,11 +41,18 @@ static bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
   return true;
 }
 
-std::vector<std::string_view> lit_reads()
+std::vector<std::string_view> deferred_reads()
 {
-  return {"depth",           "view_block",  "light_block",  "light_texture", "light_cluster_block",
-          "light_lists",     "world_block", "shadow_cubes", "shadow_maps",   "shadow_esm",
-          "shadow_esm_half", "shadow_evsm", "behind",       "behind_depth",  "bodies"};
+  return {"depth",       "view_block",  "light_block",  "light_texture", "light_cluster_block",
+          "light_lists", "world_block", "shadow_cubes", "shadow_maps"};
+}
+
+std::vector<std::string_view> forward_reads(std::initializer_list<std::string_view> more)
+{
+  std::vector<std::string_view> reads = deferred_reads();
+  reads.insert(reads.end(), {"shadow_esm", "shadow_esm_half", "shadow_evsm"});
+  reads.insert(reads.end(), more);
+  return reads;
 }
 
 std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)

@@ -11,6 +11,7 @@
 #include "render_scene.hh"
 
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -202,8 +203,10 @@ inline gpu::Texture create_target(gpu::Device &device, const char *name, gpu::Fo
 /** Binds the resources that a program with lighting reads, except the textures of the material. */
 using BindLit = std::function<void(draw::ShadingGroup &)>;
 
-/** FrameStep::reads of a step whose programs light surfaces. */
-[[nodiscard]] std::vector<std::string_view> lit_reads();
+/** FrameStep::reads of deferred lighting. */
+[[nodiscard]] std::vector<std::string_view> deferred_reads();
+/** FrameStep::reads of a step that draws and lights surfaces; \a more: what it reads besides. */
+[[nodiscard]] std::vector<std::string_view> forward_reads(std::initializer_list<std::string_view> more = {});
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";

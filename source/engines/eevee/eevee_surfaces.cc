@@ -212,7 +212,7 @@ FrameStep SurfacePasses::step()
           .summary = "Shades each pixel of other objects once, by an equal-depth test.",
           .part = FrameStep::Part::Rows,
           .need = [this](const FrameState &state) { return need(state); },
-          .reads = lit_reads(),
+          .reads = forward_reads(),
           .writes = {"radiance"},
           .passes = {{&pass_, "objects in the view",
                       [this](const FrameState &) { return depth_.has_gbuffer() ? all_in_gbuffer : nothing_seen; }},

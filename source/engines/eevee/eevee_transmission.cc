@@ -116,7 +116,7 @@ FrameStep Transmission::step()
                 return need_of_transmission(state, !pass_.is_empty(), "surfaces that transmit light",
                                             "all that transmits light is blended");
               },
-          .reads = lit_reads(),
+          .reads = forward_reads({"behind", "behind_depth"}),
           .writes = {"depth", "radiance"},
           .passes = {depths(), {&pass_, "objects in the view", why_empty}},
           .record =
