@@ -2,18 +2,12 @@
 #include "shader_check.hh"
 
 #include "gpu_shader_text.hh"
-#include "internal/shader_check_block.hh"
+#include "internal/shader_check_checker.hh"
 #include "internal/shader_check_dialect.hh"
-#include "internal/shader_check_log.hh"
-#include "shared_types.h"
-
-#include <spirv-tools/libspirv.hpp>
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
-#include <tuple>
 
 namespace gnomon::shader_check {
 
@@ -44,30 +38,6 @@ constexpr std::array<StageName, 14> stages = {{
     {Stage::ClosestHit, "rchit", "closest hit"},
     {Stage::Miss, "rmiss", "miss"},
     {Stage::Callable, "rcall", "callable"},
-}};
-
-spv_target_env environment_of(CheckTarget target)
-{
-  switch (target) {
-    case CheckTarget::Vulkan10: return SPV_ENV_VULKAN_1_0;
-    case CheckTarget::Vulkan11: return SPV_ENV_VULKAN_1_1;
-    case CheckTarget::Vulkan12: return SPV_ENV_VULKAN_1_2;
-    case CheckTarget::Vulkan13: return SPV_ENV_VULKAN_1_3;
-    default: return SPV_ENV_OPENGL_4_5;
-  }
-}
-
-struct Feature {
-  std::string_view name;
-  void (spvtools::ValidatorOptions::*allow)(bool);
-};
-
-constexpr std::array<Feature, 5> features = {{
-    {"scalarBlockLayout", &spvtools::ValidatorOptions::SetScalarBlockLayout},
-    {"uniformBufferStandardLayout", &spvtools::ValidatorOptions::SetUniformBufferStandardLayout},
-    {"relaxedBlockLayout", &spvtools::ValidatorOptions::SetRelaxBlockLayout},
-    {"workgroupMemoryExplicitLayoutScalarBlockLayout", &spvtools::ValidatorOptions::SetWorkgroupScalarBlockLayout},
-    {"maintenance4", &spvtools::ValidatorOptions::SetAllowLocalSizeId},
 }};
 
 }  // namespace
@@ -109,9 +79,6 @@ std::string_view to_string(Severity severity)
 
 namespace {
 
-/** Above this size a uniform block is an error, although some devices support more. */
-constexpr int uniform_block_bytes_limit = 65536;
-
 using Reads = CheckRule::Reads;
 
 constexpr std::array<CheckRule, 20> rules = {{
@@ -137,565 +104,6 @@ constexpr std::array<CheckRule, 20> rules = {{
     {"unguarded-math", "the argument of a function with a limited domain is guarded", true, false, Reads::Functions},
 }};
 
-/** The settings of a Checker. */
-struct CheckSettings {
-  CheckOptions options;
-  /** Whether the shaders are Gnomon's, to which rules with CheckRule::is_own apply. */
-  bool is_own = true;
-  std::span<const std::string> features;
-};
-
-/** Whether two stages are parts of one pipeline. */
-bool is_pipeline(Stage stage)
-{
-  return stage <= Stage::Fragment;
-}
-
-class Checker {
- public:
-  Checker(std::string name, const std::vector<std::string> &defines, const CheckSettings &settings)
-      : name_(std::move(name)), options_(settings.options), settings_(settings)
-  {
-    for (const std::string &define : defines) {
-      variant_ += (variant_.empty() ? "" : " ") + define;
-    }
-  }
-
-  /** A stage that cannot be read. */
-  void refuse(std::string file, int line, std::string_view text)
-  {
-    add(Severity::Error, "include", std::move(file), line, text);
-  }
-  /** Compiles the next stage. */
-  void compile(std::unique_ptr<StageSource> source)
-  {
-    const std::size_t stage = c_.sources.size();
-    const bool is_compiled = c_.add(std::move(source), options_.target);
-    StageSource &added = *c_.sources.back();
-    check_byte_order_mark(added);
-    check_version(added);
-    if (check_bytes(added)) {
-      // glslang's messages would only follow from it.
-      is_compiled_ = false;
-      return;
-    }
-    for (const CompileMessage &message : compile_messages(c_.glslang.log(), added)) {
-      const bool is_warning = message.severity == Severity::Warning && message.rule == "compile";
-      add(message.severity, is_warning ? "compile-warning" : message.rule, stage, message.position, message.text);
-    }
-    if (!is_compiled && !has_errors()) {
-      add(Severity::Error, "compile", stage, {}, std::string(c_.glslang.log()));
-    }
-    is_compiled_ &= is_compiled;
-  }
-  /** Links the stages and checks them together. */
-  void finish()
-  {
-    if (is_compiled_ && !has_errors()) {
-      const std::size_t compiled = messages_.size();
-      link_stages();
-      std::stable_sort(messages_.begin() + std::ptrdiff_t(compiled), messages_.end(),
-                       [](const CheckMessage &a, const CheckMessage &b) {
-                         return std::tie(a.file, a.line, a.rule, a.text) < std::tie(b.file, b.line, b.rule, b.text);
-                       });
-    }
-    // A header that is part of several stages gives the same message several times.
-    std::set<std::tuple<std::string_view, int, std::string_view, std::string_view>> known;
-    std::vector<CheckMessage> unique;
-    for (CheckMessage &message : messages_) {
-      if (known.emplace(message.file, message.line, message.rule, message.text).second) {
-        unique.push_back(message);
-      }
-    }
-    known.clear();
-    messages_ = std::move(unique);
-  }
-  std::vector<CheckMessage> messages()
-  {
-    return std::move(messages_);
-  }
-  const Compilation &compilation() const
-  {
-    return c_;
-  }
-  std::vector<std::pair<Stage, std::vector<std::uint32_t>>> spirv()
-  {
-    return std::move(spirv_);
-  }
-
- private:
-  static const CheckRule &rule_of(std::string_view name)
-  {
-    return *std::ranges::find(rules, name, &CheckRule::name);
-  }
-  /** The severity of a mistake; empty: it is not reported. \a set: a level that a comment gives. */
-  std::optional<Severity> severity_of(Severity usual, std::string_view name, std::optional<RuleLevel> set) const
-  {
-    const CheckRule &rule = rule_of(name);
-    if (rule.is_optional && !set) {
-      const auto found = options_.levels.find(name);
-      set = found == options_.levels.end() ? std::nullopt : std::optional(found->second);
-    }
-    if (rule.is_optional && set) {
-      return *set == RuleLevel::Off ? std::nullopt
-                                    : std::optional(*set == RuleLevel::Error ? Severity::Error : Severity::Warning);
-    }
-    if (rule.is_own && !settings_.is_own) {
-      return std::nullopt;
-    }
-    return options_.is_strict ? Severity::Error : usual;
-  }
-  void add(Severity usual, std::string_view rule, std::string file, int line, std::string_view text)
-  {
-    if (const std::optional<Severity> severity = severity_of(usual, rule, std::nullopt)) {
-      messages_.push_back({*severity, std::move(file), line, bounded(text), rule, name_, variant_, options_.target});
-    }
-  }
-  void add(Severity usual, std::string_view rule, std::size_t stage, SourcePosition position, std::string_view text)
-  {
-    const SourceLines &lines = c_.lines[stage];
-    const std::optional<Severity> severity = severity_of(usual, rule, lines.level(position.file, rule));
-    if (severity && !(usual == Severity::Warning && lines.is_excused(position, rule))) {
-      messages_.push_back({*severity, c_.file(stage, position), position.line, bounded(text), rule, name_, variant_,
-                           options_.target, position.column});
-    }
-  }
-  bool has_errors() const
-  {
-    return std::ranges::any_of(messages_, [](const CheckMessage &m) { return m.severity == Severity::Error; });
-  }
-
-  void check_byte_order_mark(const StageSource &source)
-  {
-    for (const std::size_t file : source.marked()) {
-      add(Severity::Error, "compile", source.files()[file], 1,
-          "the file begins with a byte-order mark (U+FEFF), which GLSL does not allow; save it as UTF-8 without one");
-    }
-  }
-
-  /** Reports files that are no text of GLSL. \return whether there is one */
-  bool check_bytes(const StageSource &source)
-  {
-    bool is_any = false;
-    for (const StageSource::File &file : source.texts()) {
-      const std::size_t zero = file.text.find('\0');
-      if (zero == std::string_view::npos) {
-        continue;
-      }
-      is_any = true;
-      // Every second byte of ASCII is 0 in UTF-16.
-      const bool is_utf16 =
-          file.text.starts_with("\xFF\xFE") || file.text.starts_with("\xFE\xFF") ||
-          (zero <= 1 && file.text.size() > zero + 2 && file.text[zero + 1] != '\0' && file.text[zero + 2] == '\0');
-      const std::string_view before = file.text.substr(0, zero);
-      add(Severity::Error, "compile", source.files()[file.index], 1 + int(std::ranges::count(before, '\n')),
-          is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
-                   : "the file has a NUL byte (0x00) here, which GLSL does not allow");
-    }
-    return is_any;
-  }
-
-  /** glslang takes any version for any target without SPIR-V. */
-  void check_version(const StageSource &source)
-  {
-    const std::optional<Version> version = version_in(source.text());
-    if (options_.target == CheckTarget::Es && version && !version->is_es()) {
-      add(Severity::Error, "compile", source.files().front(), version->line,
-          fmt::format("version {} is not of GLSL ES, and the target is OpenGL ES", version->number));
-    }
-  }
-
-  /**
-   * Whether only a link would need what \a message misses: a program of OpenGL may have several shaders of one stage,
-   * of which one has the `main` and the layouts of the stage, and others have functions that it calls.
-   */
-  static bool is_about_other_shaders(const LinkMessage &message)
-  {
-    return message.severity == Severity::Warning ||
-           std::ranges::any_of(std::array{"Missing entry point", "No function definition", "At least one shader must"},
-                               [&](const char *part) { return message.text.find(part) != std::string::npos; });
-  }
-
-  void link_stages()
-  {
-    bool is_linked = c_.glslang.link();
-    const std::string log(c_.glslang.log());
-    if (!is_linked && c_.sources.size() == 1 && options_.target == CheckTarget::OpenGl &&
-        std::ranges::all_of(link_messages(log), is_about_other_shaders)) {
-      return;
-    }
-    c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
-    check_findings();
-    check_slots();
-    check_varyings();
-    if (!is_linked && may_differ(link_messages(log))) {
-      add_block_differences(link_messages(log));
-      is_linked = true;
-    }
-    // glslang's link errors have no line. They are reported only if our own checks, whose messages have lines, found no
-    // mistake.
-    if (!is_linked && !has_errors()) {
-      for (const LinkMessage &message : link_messages(log)) {
-        if (message.severity == Severity::Error) {
-          const auto [stage, position] = place_of(message.text);
-          const bool is_recursion = message.text.find("Recursion detected") != std::string::npos;
-          add(Severity::Error, is_recursion ? "recursion" : "link", stage, position, message.text);
-        }
-      }
-      if (!has_errors()) {
-        add(Severity::Error, "link", c_.sources.size() - 1, SourcePosition(), log);
-      }
-    }
-    if (!is_linked) {
-      return;
-    }
-    check_unused_bindings();
-    check_blocks();
-    if (has_spirv(options_.target)) {
-      make_spirv();
-    }
-  }
-
-  /**
-   * Whether all of \a errors are differences between stages that Vulkan, which connects stages by number and not by
-   * name, allows.
-   */
-  bool may_differ(const std::vector<LinkMessage> &errors) const
-  {
-    return is_vulkan(options_.target) && !settings_.is_own && is_difference_between_stages(errors);
-  }
-  static bool is_difference_between_stages(const std::vector<LinkMessage> &messages)
-  {
-    return std::ranges::all_of(messages, [](const LinkMessage &message) {
-      // "Linking vertex and fragment stages: …", and from glslang 15 on
-      // "Linking fragment stage: … vertex stage: … fragment stage: …".
-      const std::string_view text = message.text;
-      const std::size_t head_length = std::min(text.find(':'), text.size());
-      return message.severity == Severity::Warning ||
-             find_word(text.substr(0, head_length), "stages") != std::string_view::npos ||
-             text.substr(head_length).find(" stage: ") != std::string_view::npos;
-    });
-  }
-  void add_block_differences(const std::vector<LinkMessage> &errors)
-  {
-    for (const LinkMessage &message : errors) {
-      const auto names_one = [&](const std::vector<Declaration> &declarations) {
-        return std::ranges::any_of(declarations, [&](const Declaration &declaration) {
-          // Stages often have parts of their own in the push constants.
-          return !declaration.is_push_constant && find_word(message.text, declaration.name) != std::string_view::npos;
-        });
-      };
-      // Inputs and outputs have rules of their own, and built-in blocks may differ.
-      const bool is_binding = std::ranges::any_of(c_.facts, [&](const StageFacts &facts) {
-        return names_one(facts.uniform_blocks) || names_one(facts.storage_blocks) || names_one(facts.textures);
-      });
-      if (message.severity == Severity::Error && is_binding) {
-        const auto [stage, position] = place_of(message.text);
-        add(Severity::Warning, "block-match", stage, position, message.text);
-      }
-    }
-  }
-
-  /** The stage that a link error is about, and the first declaration in it that the error names. */
-  std::pair<std::size_t, SourcePosition> place_of(std::string_view text) const
-  {
-    // "Linking fragment stage: …" or "Linking vertex and fragment stages: …".
-    const std::string_view head = text.substr(0, text.find(':'));
-    std::vector<std::size_t> stages_in_question;
-    for (std::size_t i = c_.sources.size(); i-- > 0;) {
-      if (find_word(head, to_string(c_.sources[i]->stage())) != std::string_view::npos) {
-        stages_in_question.push_back(i);
-      }
-    }
-    if (stages_in_question.empty()) {
-      stages_in_question.push_back(c_.sources.size() - 1);
-    }
-    for (const bool is_declared : {true, false}) {
-      for (gpu::TextScanner scanner(text.substr(head.size())); !scanner.rest().empty();) {
-        const std::string_view word = scanner.take_word();
-        if (word.empty()) {
-          scanner.take(scanner.rest().substr(0, 1));
-          continue;
-        }
-        for (const std::size_t stage : stages_in_question) {
-          for (const std::string_view keyword : {"uniform", "buffer", "in", "out", "shared"}) {
-            const auto place = c_.lines[stage].find_name(word, is_declared ? keyword : std::string_view());
-            const bool is_there =
-                place && (!is_declared || find_word(c_.lines[stage].line(*place), keyword) != std::string_view::npos);
-            if (is_there && !is_plain_word(word)) {
-              return {stage, *place};
-            }
-          }
-        }
-      }
-    }
-    return {stages_in_question.front(), SourcePosition()};
-  }
-  /** Words of glslang's messages that are also words of GLSL. */
-  static bool is_plain_word(std::string_view word)
-  {
-    static constexpr std::array<std::string_view, 12> words = {
-        "in", "out", "uniform", "buffer", "layout", "location", "binding", "shared", "const", "stage", "type", "main"};
-    return std::ranges::find(words, word) != words.end();
-  }
-
-  void check_findings()
-  {
-    for (std::size_t i = 0; i < c_.facts.size(); i++) {
-      for (const StageFinding &finding : c_.facts[i].findings) {
-        add(finding.is_error ? Severity::Error : Severity::Warning, finding.rule, i, finding.position, finding.text);
-      }
-    }
-  }
-
-  void check_slots()
-  {
-    struct Slot {
-      gpu::BindingKind kind;
-      const Declaration *declaration;
-    };
-    std::vector<Slot> known;
-    const auto take = [&](std::size_t stage, gpu::BindingKind kind, const Declaration &declaration) {
-      const bool is_push_constant = declaration.is_push_constant && declaration.slot < 0;
-      if (declaration.slot < 0 && !is_push_constant) {
-        add(Severity::Error, "slot", stage, declaration.position,
-            fmt::format("{} '{}' has no layout(binding = …)", to_string(kind), declaration.name));
-      }
-      for (const Slot &other : known) {
-        // OpenGL has separate slots for each kind of resource, Vulkan one set for all.
-        const bool is_same_space =
-            (kind == other.kind && declaration.is_image == other.declaration->is_image) || is_vulkan(options_.target);
-        const bool is_same_slot = declaration.slot >= 0 && declaration.slot == other.declaration->slot &&
-                                  declaration.set == other.declaration->set;
-        if (declaration.name == other.declaration->name && kind == other.kind) {
-          if (!is_same_slot && !is_push_constant) {
-            add(Severity::Error, "slot", stage, declaration.position,
-                fmt::format("{} '{}' has slot {} here and {} in an earlier stage", to_string(kind), declaration.name,
-                            declaration.slot, other.declaration->slot));
-          }
-          return;
-        }
-        if (is_same_slot && is_same_space) {
-          add(Severity::Error, "slot", stage, declaration.position,
-              fmt::format("{} '{}' has slot {}, as {} '{}' has", to_string(kind), declaration.name, declaration.slot,
-                          to_string(other.kind), other.declaration->name));
-        }
-      }
-      known.push_back({kind, &declaration});
-    };
-    for (std::size_t i = 0; i < c_.facts.size(); i++) {
-      for (const Declaration &block : c_.facts[i].uniform_blocks) {
-        take(i, gpu::BindingKind::UniformBlock, block);
-      }
-      for (const Declaration &block : c_.facts[i].storage_blocks) {
-        take(i, gpu::BindingKind::StorageBlock, block);
-      }
-      for (const Declaration &texture : c_.facts[i].textures) {
-        take(i, gpu::BindingKind::Texture, texture);
-      }
-    }
-  }
-
-  /** Whether an output and an input are connected: by location if they have one, otherwise by name. */
-  static bool match(const Declaration &output, const Declaration &input)
-  {
-    if (output.location < 0 || input.location < 0) {
-      return output.name == input.name;
-    }
-    const bool has_components = output.component_count > 0 && input.component_count > 0;
-    return output.location < input.location + input.location_count &&
-           input.location < output.location + output.location_count &&
-           !(has_components && (output.component >= input.component + input.component_count ||
-                                input.component >= output.component + output.component_count));
-  }
-  /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
-  bool is_part(const Declaration &output, const Declaration &input) const
-  {
-    const bool is_allowed = options_.target == CheckTarget::Vulkan13 ||
-                            (is_vulkan(options_.target) &&
-                             std::ranges::find(settings_.features, "maintenance4") != settings_.features.end());
-    return is_allowed && output.type.array_sizes.empty() && input.type.array_sizes.empty() &&
-           input.type.row_count == 0 && output.type.scalar == input.type.scalar &&
-           input.type.vector_size < output.type.vector_size;
-  }
-
-  static std::string named(const Declaration &varying)
-  {
-    return varying.location < 0 ? fmt::format("'{}'", varying.name)
-                                : fmt::format("'{}', location {},", varying.name, varying.location);
-  }
-
-  void check_varyings()
-  {
-    for (std::size_t i = 1; i < c_.facts.size(); i++) {
-      if (!is_pipeline(c_.sources[i]->stage()) || c_.sources[i - 1]->stage() == Stage::Task) {
-        continue;
-      }
-      const std::string_view before = to_string(c_.sources[i - 1]->stage());
-      const std::vector<Declaration> &outputs = c_.facts[i - 1].outputs;
-      for (const Declaration &input : c_.facts[i].inputs) {
-        const auto output = std::ranges::find_if(outputs, [&](const Declaration &o) { return match(o, input); });
-        if (output == outputs.end()) {
-          if (input.is_used && !input.is_member) {
-            add(Severity::Error, "missing-varying", i, input.position,
-                fmt::format("input {} is no output of the {} stage", named(input), before));
-          }
-          continue;
-        }
-        const std::string written = type_name(output->type, output->is_arrayed);
-        const std::string read = type_name(input.type, input.is_arrayed);
-        if (output->location == input.location && output->component == input.component && written != read &&
-            !input.type.is_struct && !is_part(*output, input)) {
-          add(Severity::Error, "varying-type", i, input.position,
-              fmt::format("input {} is {}, and the {} stage writes {}", named(input), read, before, written));
-        }
-      }
-      for (const Declaration &output : outputs) {
-        if (!output.is_captured && std::ranges::none_of(c_.facts[i].inputs, [&](const Declaration &input) {
-              return input.is_used && match(output, input);
-            })) {
-          add(Severity::Warning, "unread-output", i - 1, output.position,
-              fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i]->stage())));
-        }
-      }
-    }
-  }
-
-  void check_unused_bindings()
-  {
-    std::map<std::pair<gpu::BindingKind, std::string>, std::pair<StageDeclaration, bool>> bindings;
-    const auto note = [&](std::size_t stage, gpu::BindingKind kind, const std::vector<Declaration> &declarations) {
-      for (const Declaration &declaration : declarations) {
-        const auto [entry, is_new] = bindings.try_emplace(std::pair(kind, declaration.name),
-                                                          std::pair(StageDeclaration{stage, &declaration}, false));
-        entry->second.second |= declaration.is_used;
-      }
-    };
-    for (std::size_t i = 0; i < c_.facts.size(); i++) {
-      note(i, gpu::BindingKind::UniformBlock, c_.facts[i].uniform_blocks);
-      note(i, gpu::BindingKind::StorageBlock, c_.facts[i].storage_blocks);
-      note(i, gpu::BindingKind::Texture, c_.facts[i].textures);
-    }
-    for (const auto &[key, value] : bindings) {
-      const auto &[found, is_used] = value;
-      if (!is_used) {
-        add(Severity::Warning, "unused-binding", found.stage, found.declaration->position,
-            fmt::format("{} '{}' is declared and never read", to_string(key.first), key.second));
-      }
-    }
-  }
-
-  void check_blocks()
-  {
-    std::set<std::string_view> known;
-    for (std::size_t i = 0; i < c_.facts.size(); i++) {
-      for (const Declaration &block : c_.facts[i].uniform_blocks) {
-        if (known.insert(block.name).second && !block.is_push_constant) {
-          check_block_size(i, block);
-        }
-      }
-    }
-    if (options_.blocks.empty()) {
-      return;
-    }
-    const gpu::ShaderInterface interface = interface_of(c_.glslang.program());
-    for (const gpu::ShaderInterface::Binding &binding : interface.bindings) {
-      const std::optional<StageDeclaration> found =
-          binding.kind == gpu::BindingKind::Texture ? std::nullopt : find_block(c_, binding.kind, binding.name);
-      if (!found) {
-        continue;
-      }
-      const auto layout = std::ranges::find(options_.blocks, binding.name, &gpu::BlockLayout::name);
-      if (layout != options_.blocks.end()) {
-        for (const BlockDifference &difference : differences(compare_block(c_, binding, *found, *layout))) {
-          add(Severity::Error, "layout", difference.file, difference.line, difference.text);
-        }
-      }
-      else {
-        add(Severity::Error, "layout", found->stage, found->declaration->position,
-            fmt::format("block '{}' is not in the table of C++ blocks", binding.name));
-      }
-    }
-  }
-
-  void check_block_size(std::size_t stage, const Declaration &block)
-  {
-    // A block ends at the end of its last member's row of 16 bytes.
-    const int bytes = int((block.size_bytes + 15) / 16 * 16);
-    if (bytes <= UNIFORM_BLOCK_BYTES_MAX) {
-      return;
-    }
-    const bool is_error = options_.is_block_size_strict || (settings_.is_own && bytes > uniform_block_bytes_limit);
-    add(is_error ? Severity::Error : Severity::Warning, "block-size", stage, block.position,
-        fmt::format("block '{}' takes {} bytes; all devices support {}, many {}, few more", block.name, bytes,
-                    UNIFORM_BLOCK_BYTES_MAX, uniform_block_bytes_limit));
-  }
-
-  void make_spirv()
-  {
-    for (std::size_t i = 0; i < c_.sources.size(); i++) {
-      const Spirv &spirv = c_.spirv(i);
-      validate(i, spirv.words, spirv.log);
-      spirv_.emplace_back(c_.sources[i]->stage(), spirv.words);
-    }
-  }
-
-  /** \a text: messages about how \a words were made. */
-  void validate(std::size_t stage, const std::vector<std::uint32_t> &words, std::string text)
-  {
-    bool is_warned = !text.empty();
-    spvtools::SpirvTools tools(environment_of(options_.target));
-    tools.SetMessageConsumer(
-        [&](spv_message_level_t, const char *, const spv_position_t &, const char *reason) { text += reason; });
-    // The validator searches linearly for a free name among equal ones, such as those of parameters. Without names its
-    // time is linear; they are made again for the message about a mistake.
-    constexpr std::size_t named_words_max = 1U << 16U;
-    const auto is_valid_with = [&](auto &&is_allowed, bool has_names = false) {
-      spvtools::ValidatorOptions allowed;
-      allowed.SetFriendlyNames(has_names);
-      for (const Feature &feature : features) {
-        if (is_allowed(feature.name)) {
-          (allowed.*feature.allow)(true);
-        }
-      }
-      return tools.Validate(words.data(), words.size(), allowed);
-    };
-    const auto is_given = [&](std::string_view name) {
-      return std::ranges::find(settings_.features, name) != settings_.features.end();
-    };
-    const std::string compiler_text = text;
-    bool is_valid = is_valid_with(is_given);
-    if (!is_valid && words.size() <= named_words_max) {
-      text = compiler_text;
-      is_valid_with(is_given, true);
-    }
-    if (!is_valid) {
-      const std::string reason = text;
-      for (const Feature &feature : features) {
-        if (is_valid_with([&](std::string_view name) { return name == feature.name || is_given(name); })) {
-          is_valid = is_warned = true;
-          text = fmt::format("a device needs the feature {0}, which --feature {0} assumes: {1}", feature.name, reason);
-          break;
-        }
-      }
-      text = is_valid ? text : reason;
-    }
-    if (!is_valid || is_warned) {
-      std::ranges::replace(text, '\n', ' ');
-      add(is_valid ? Severity::Warning : Severity::Error, "spirv", stage, {}, text);
-    }
-  }
-
-  std::string name_;
-  const CheckOptions &options_;
-  const CheckSettings &settings_;
-  std::string variant_;
-  bool is_compiled_ = true;
-  Compilation c_;
-  std::vector<CheckMessage> messages_;
-  std::vector<std::pair<Stage, std::vector<std::uint32_t>>> spirv_;
-};
-
 }  // namespace
 
 std::span<const CheckRule> check_rules()
@@ -713,16 +121,6 @@ std::vector<std::string_view> left_out_rules([[maybe_unused]] CheckTarget target
     }
   }
 #endif
-  return names;
-}
-
-std::span<const std::string_view> device_features()
-{
-  static const std::array<std::string_view, features.size()> names = [] {
-    std::array<std::string_view, features.size()> list;
-    std::ranges::transform(features, list.begin(), &Feature::name);
-    return list;
-  }();
   return names;
 }
 
@@ -756,6 +154,27 @@ std::vector<CheckMessage> check_shader(const gpu::ShaderDesc &desc, const gpu::S
     messages = checker.messages();
   });
   return messages;
+}
+
+/** Adds the files that \a compilation has read or not found, and those of \a read and \a missed, to \a result. */
+static void add_files(const Compilation &compilation, const std::set<std::string> &read,
+                      const std::set<std::string> &missed, ProgramCheck &result)
+{
+  const auto add_new = [](std::vector<std::string> &list, const auto &paths) {
+    for (const std::string &path : paths) {
+      if (std::ranges::find(list, path) == list.end()) {
+        list.push_back(path);
+      }
+    }
+  };
+  for (const std::unique_ptr<StageSource> &source : compilation.sources) {
+    for (const StageSource::File &file : source->texts()) {
+      add_new(result.files, std::array{source->files()[file.index]});
+    }
+    add_new(result.absent, source->absent());
+  }
+  add_new(result.files, read);
+  add_new(result.absent, missed);
 }
 
 ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files, const ProgramOptions &options)
@@ -806,25 +225,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
     if (!result.has_errors()) {
       result.spirv = checker.spirv();
     }
-    const auto add_new = [](std::vector<std::string> &list, const std::string &path) {
-      if (std::ranges::find(list, path) == list.end()) {
-        list.push_back(path);
-      }
-    };
-    for (const std::unique_ptr<StageSource> &source : checker.compilation().sources) {
-      for (const StageSource::File &file : source->texts()) {
-        add_new(result.files, source->files()[file.index]);
-      }
-      for (const std::string &path : source->absent()) {
-        add_new(result.absent, path);
-      }
-    }
-    for (const std::string &path : read) {
-      add_new(result.files, path);
-    }
-    for (const std::string &path : missed) {
-      add_new(result.absent, path);
-    }
+    add_files(checker.compilation(), read, missed, result);
   });
   return result;
 }
