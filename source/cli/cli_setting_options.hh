@@ -65,9 +65,8 @@ template <typename Value>
   else if constexpr (std::is_arithmetic_v<Value>) {
     const scene::ShownLimits limits = scene::shown_limits(row, is_integer<Value>);
     const std::string_view unit = scene::shown_unit(row).text;
-    return (limits.max < scene::float_max ? fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max)
-                                          : fmt::format("at least {:g}", limits.min)) +
-           (unit.empty() ? "" : " ") + std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0");
+    return fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max) + (unit.empty() ? "" : " ") +
+           std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0");
   }
   if (!row.automatic.empty()) {
     words.push_back(row.automatic);

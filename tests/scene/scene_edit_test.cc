@@ -1034,9 +1034,9 @@ TEST(SceneEdit, InvalidValuesAreRefused)
                                     {"not affine", [](Node &node) { node.parent_from_node = glm::dmat4(0.0); }}});
   expect_refused<Lamp>({.name = "l"},
                        {{"intensity is not finite", [](Lamp &lamp) { lamp.intensity = float(nan); }},
-                        {"intensity -30 is not at least 0", [](Lamp &lamp) { lamp.intensity = -30.0F; }},
+                        {"intensity -30 is not from 0 to 1e+30", [](Lamp &lamp) { lamp.intensity = -30.0F; }},
                         {"color is not finite", [](Lamp &lamp) { lamp.color.g = float(infinity); }},
-                        {"color -1 is not at least 0", [](Lamp &lamp) { lamp.color.b = -1.0F; }},
+                        {"color -1 is not from 0 to 1e+12", [](Lamp &lamp) { lamp.color.b = -1.0F; }},
                         {"radius -1", [](Lamp &lamp) { lamp.radius = -1.0F; }},
                         {"spot_outer_angle is not finite", [](Lamp &lamp) { lamp.spot_outer_angle = float(nan); }},
                         {"shadow_bias is not finite", [](Lamp &lamp) { lamp.shadow.bias = float(nan); }}});
@@ -1049,15 +1049,16 @@ TEST(SceneEdit, InvalidValuesAreRefused)
   Material turned;
   turned.normal_scale = turned.anisotropy_rotation = -3.0F;
   Scene().add(turned);
-  expect_refused<Camera>({.name = "c"},
-                         {{"vertical_angle 0 is not from", [](Camera &camera) { camera.vertical_angle = 0.0F; }},
-                          {"vertical_angle 9 is not from", [](Camera &camera) { camera.vertical_angle = 9.0F; }},
-                          {"near 0 is not above 0", [](Camera &camera) { camera.near = 0.0F; }},
-                          {"far is not finite", [](Camera &camera) { camera.far = float(nan); }},
-                          {"half_height 0 is not at least", [](Camera &camera) {
-                             camera.kind = CameraKind::Orthographic;
-                             camera.half_height = 0.0F;
-                           }}});
+  expect_refused<Camera>(
+      {.name = "c"},
+      {{"vertical_angle 0 is not from", [](Camera &camera) { camera.vertical_angle = 0.0F; }},
+       {"vertical_angle 9 is not from", [](Camera &camera) { camera.vertical_angle = 9.0F; }},
+       {"near 0 is not above 0", [](Camera &camera) { camera.near = 0.0F; }},
+       {"far is not finite", [](Camera &camera) { camera.far = float(nan); }},
+       {"half_height 0 is not from 1e-12 to 1e+12, or the negative of such a number", [](Camera &camera) {
+          camera.kind = CameraKind::Orthographic;
+          camera.half_height = 0.0F;
+        }}});
 }
 
 TEST(SceneEdit, ARefusedTransformChangesNothing)

@@ -120,7 +120,7 @@ class MaterialReader {
   void read_specular()
   {
     result_.specular = clamped("specularFactor", source_.specular, 1.0);
-    result_.specular_color = clamped("specularColorFactor", vec3(source_.specular_color), large);
+    result_.specular_color = clamped("specularColorFactor", vec3(source_.specular_color), max_of("specular_color"));
     if (source_.ior) {
       const double ior = valid_ior(*source_.ior);
       if (ior != *source_.ior) {
@@ -147,8 +147,8 @@ class MaterialReader {
   void read_transmission()
   {
     result_.transmission = clamped("transmissionFactor", source_.transmission, 1.0);
-    result_.thickness = source_.own_thickness ? clamped("gnomon_thickness", *source_.own_thickness, large)
-                                              : clamped("thicknessFactor", source_.thickness, large);
+    result_.thickness = source_.own_thickness ? clamped("gnomon_thickness", *source_.own_thickness, max_of("thickness"))
+                                              : clamped("thicknessFactor", source_.thickness, max_of("thickness"));
     result_.attenuation_color = clamped("attenuationColor", vec3(source_.attenuation_color), 1.0);
     if (!source_.attenuation_distance) {
       return;
@@ -156,7 +156,8 @@ class MaterialReader {
     const double distance = *source_.attenuation_distance;
     if (distance > 0.0) {
       // Above the least float: 0 means that nothing is absorbed.
-      result_.attenuation_distance = static_cast<float>(std::clamp(distance, 1.0 / large, large));
+      result_.attenuation_distance =
+          static_cast<float>(std::clamp(distance, scene::smallest_length, max_of("attenuation_distance")));
     }
     else {
       warnings_.add(what_, "attenuationDistance is " + text(distance) + ", not above 0; nothing is absorbed");
@@ -204,7 +205,7 @@ class MaterialReader {
 
   void read_emissive()
   {
-    const float strength = clamped("emissiveStrength", source_.emissive_strength, large);
+    const float strength = clamped("emissiveStrength", source_.emissive_strength, max_of("emissive"));
     result_.emissive = clamped("emissiveFactor", vec3(source_.emissive), 1.0) * strength;
   }
 
@@ -322,8 +323,10 @@ class MaterialReader {
     return result;
   }
 
-  /** Upper limit for factors without one in glTF. Products of a few such numbers are finite in float. */
-  static constexpr double large = 1e9;
+  static double max_of(std::string_view name)
+  {
+    return scene::description_of<Material>(name).max;
+  }
 };
 
 }  // namespace
