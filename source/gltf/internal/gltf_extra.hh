@@ -50,6 +50,13 @@ struct Range {
   return {double(float(row.min)) * factor, double(float(row.max)) * factor, row.least * factor, row.zero};
 }
 
+/** Of the property of a T that is named \a name. */
+template <typename T>
+[[nodiscard]] Range range_of(std::string_view name, double factor = 1.0)
+{
+  return range_of(scene::description_of<T>(name), factor);
+}
+
 /** The text of an extra for messages. */
 [[nodiscard]] std::string written(const Model::Extra &extra);
 

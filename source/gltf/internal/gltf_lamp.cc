@@ -26,12 +26,6 @@ using std::numbers::pi;
 /** Angles may have been rounded to float. */
 constexpr double angle_tolerance = 1e-6;
 
-/** The limits of a lamp's property in files. \a factor: unit of the file over that of the scene */
-Range limits_of(std::string_view name, double factor = 1.0)
-{
-  return range_of(scene::description_of<Lamp>(name), factor);
-}
-
 /** Whether the extra has a meaning on \a node without a lamp. */
 bool is_extra_without_lamp(const Model::Node &node, std::string_view key)
 {
@@ -51,12 +45,12 @@ class LampReader : private ExtraReader {
   {
     lamp_.kind = punctual_kind(light.type);
     for (std::size_t i = 0; i < 3; i++) {
-      lamp_.color[int(i)] = checked("color", light.color[i], limits_of("color"));
+      lamp_.color[int(i)] = checked("color", light.color[i], range_of<Lamp>("color"));
     }
-    static_cast<void>(checked("intensity", light.intensity, limits_of("intensity", lumen_per_watt)));
+    static_cast<void>(checked("intensity", light.intensity, range_of<Lamp>("intensity", lumen_per_watt)));
     lamp_.intensity = static_cast<float>(light.intensity / lumen_per_watt);
     if (lamp_.kind == LampKind::Point || lamp_.kind == LampKind::Spot) {
-      lamp_.range = checked("range", light.range, limits_of("range"));
+      lamp_.range = checked("range", light.range, range_of<Lamp>("range"));
     }
     if (lamp_.kind == LampKind::Spot) {
       read_cone(light);
@@ -122,7 +116,7 @@ class LampReader : private ExtraReader {
 
   void read_cone(const Model::Light &light)
   {
-    Range range = limits_of("spot_outer_angle");
+    Range range = range_of<Lamp>("spot_outer_angle");
     range.max += angle_tolerance;
     const double outer = checked("outerConeAngle", light.outer_cone_angle, range);
     // glTF requires a smaller inner angle. Equal angles are accepted: Blender writes them for a hard edge.

@@ -37,11 +37,6 @@ constexpr Range index_range{0.0, std::numeric_limits<int>::max()};
 /** Its square exceeds all counts of texels. */
 constexpr Range width_range{1.0, 1 << 20};
 
-Range limits_of(std::string_view name)
-{
-  return range_of(scene::description_of<World>(name));
-}
-
 class WorldImporter {
  public:
   WorldImporter(const File &file, const ReadPicture &read_picture, Warnings &warnings)
@@ -100,9 +95,9 @@ class WorldImporter {
   World of_extras() const
   {
     World world;
-    world.color = extras_->color(color_key, world.color, limits_of("color"));
-    world.strength = extras_->number(strength_key, world.strength, limits_of("strength"));
-    world.rotation = extras_->number(rotation_key, world.rotation, limits_of("rotation"));
+    world.color = extras_->color(color_key, world.color, range_of<World>("color"));
+    world.strength = extras_->number(strength_key, world.strength, range_of<World>("strength"));
+    world.rotation = extras_->number(rotation_key, world.rotation, range_of<World>("rotation"));
     const std::optional<int> accessor = extras_->whole_if_any(accessor_key, index_range);
     const std::optional<int> width = extras_->whole_if_any(width_key, width_range);
     const Model::Extra *given = extras_->find(picture_key);
@@ -120,7 +115,7 @@ class WorldImporter {
       world.picture = usable([&] { return picture_of_file(*uri); });
     }
     else if (std::holds_alternative<std::vector<double>>(*given)) {
-      world.color *= extras_->color(picture_key, world.color, limits_of("color"));
+      world.color *= extras_->color(picture_key, world.color, range_of<World>("color"));
     }
     else {
       extras_->fail(picture_key, written(*given), "three numbers or the name of a file");
@@ -130,7 +125,7 @@ class WorldImporter {
 
   World of_light(const Model::ImageLight &light, const std::string &name, bool has_lamps) const
   {
-    const Range intensities = limits_of("strength");
+    const Range intensities = range_of<World>("strength");
     if (!intensities.contains(light.intensity)) {
       throw LeftOut("its intensity is " + text(light.intensity) + ", and must be " + intensities.text());
     }
