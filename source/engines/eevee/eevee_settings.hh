@@ -179,7 +179,7 @@ constexpr void Settings::for_each_property(Visit &&visit)
   visit(property(&Settings::light_threshold, {.name = "light_threshold",
                                               .option = "light-threshold",
                                               .unit = "W/m²",
-                                              .max = 1e30,
+                                              .max = scene::light_max,
                                               .sentence = "Irradiance that may be left out of the light of each point "
                                                           "and spot lamp."}));
   visit(property(&Settings::emissive_point_count,
