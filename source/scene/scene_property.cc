@@ -21,6 +21,11 @@ std::string range_text(const Description &description, double factor)
                      factor * description.max, is_mirrored ? ", or the negative of such a number" : "");
 }
 
+std::string number_text(const Description &description, double value)
+{
+  return fmt::format("{:g}", value * shown_unit(description).factor);
+}
+
 std::string range_fault(const Description &description, double value)
 {
   return fmt::format("{} {:g} is not {}", description.name, value, range_text(description));

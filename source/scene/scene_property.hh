@@ -151,6 +151,34 @@ struct ShownLimits {
 /** That \a value is out of the limits: the name, the value and the limits. */
 [[nodiscard]] std::string range_fault(const Description &description, double value);
 
+/** \a value in the shown unit, as options take it. */
+[[nodiscard]] std::string number_text(const Description &description, double value);
+
+/** The words for the values of an enumeration, in their order: in files, options and scripts. */
+template <typename Enum>
+inline constexpr std::array<std::string_view, 0> words{};
+
+/** \a value of the property \a row, as an option takes it. Types of their own have a function text_of. */
+template <typename Value>
+[[nodiscard]] std::string value_text(const Description &row, const Value &value)
+{
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(words<Value>[std::size_t(value)]);
+  }
+  else if constexpr (std::is_same_v<Value, bool>) {
+    return std::string(row.switch_words[std::size_t(value)]);
+  }
+  else if constexpr (std::is_same_v<Value, std::string>) {
+    return value;
+  }
+  else if constexpr (requires { text_of(value); }) {
+    return text_of(value);
+  }
+  else {
+    return number_text(row, double(value));
+  }
+}
+
 /** Calls \a visit with each number of \a value as a double. Enumerations, bools, texts and absent values have none. */
 template <typename Value, typename Visit>
 constexpr void for_each_number(const Value &value, Visit &&visit)
@@ -232,9 +260,5 @@ template <typename T>
   T::for_each_property([&](const Description &row) { found = row.name == name ? row : found; });
   return found;
 }
-
-/** The words for the values of an enumeration, in their order: in files, options and scripts. */
-template <typename Enum>
-inline constexpr std::array<std::string_view, 0> words{};
 
 }  // namespace gnomon::scene
