@@ -206,15 +206,27 @@ class MaterialReader {
 
   void read_emissive()
   {
-    scene::Description row = scene::description_of<Material>("emissive");
-    const float strength = clamped(row, "emissiveStrength", source_.emissive_strength);
-    row.max = 1.0;
+    const scene::Description row = scene::description_of<Material>("emissive");
+    scene::Description factor_row = row;
+    factor_row.max = 1.0;
     if (const std::array<double, 4> *const source = source_.factor("emissive")) {
       for (int i = 0; i < 3; i++) {
-        emissive_factor_[i] = clamped(row, "emissiveFactor", (*source)[std::size_t(i)]);
+        emissive_factor_[i] = clamped(factor_row, "emissiveFactor", (*source)[std::size_t(i)]);
       }
     }
-    result_.emissive = emissive_factor_ * strength;
+    // The limit is that of the product.
+    const double largest = std::max({emissive_factor_.r, emissive_factor_.g, emissive_factor_.b});
+    double strength = std::max(0.0, source_.emissive_strength);
+    if (!row.allows((largest > 0.0 ? largest : 1.0) * strength)) {
+      strength = row.max / (largest > 0.0 ? largest : 1.0);
+    }
+    if (strength != source_.emissive_strength) {
+      warnings_.add(what_, "emissiveStrength is " + text(source_.emissive_strength) + ", clamped to " + text(strength));
+    }
+    const double factor = float(std::min(strength, scene::float_max));
+    for (int i = 0; i < 3; i++) {
+      result_.emissive[i] = row.nearest(factor * double(emissive_factor_[i]));
+    }
   }
 
   void read_alpha()
