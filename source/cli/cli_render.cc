@@ -107,9 +107,7 @@ bool render_frames(const SceneWork &work, int picture, scene::Scene &scene, cons
   const RenderOptions &options = work.options;
   RenderResult &result = work.result;
   draw::Target target = display ? display->target() : draw::Target();
-  const render_scene::Display shown = options.display();
-  target.view_transform = shown.view_transform;
-  target.exposure = shown.exposure;
+  set_display(target, options.display());
   target.composition = draw::Composition::ReplaceStraight;
 
   const int sample_count = options.sample_range.empty() ? options.samples : renderer.settings().drawn_sample_count();

@@ -6,6 +6,7 @@
 #include "cli_device.hh"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -20,42 +21,68 @@ namespace {
 
 /** Options that do not go together, and the sentence that says so, in the help and in messages. */
 struct Exclusion {
-  std::vector<std::string> first;
-  std::vector<std::string> second;
-  std::string sentence;
+  /** One of `first` and one of `second` were given. Both are empty if `is_broken` decides. */
+  std::vector<std::string> first{};
+  std::vector<std::string> second{};
+  /** Decides by values of options, such as the extension of a file. */
+  bool (*is_broken)(const RenderOptions &options) = nullptr;
+  std::string sentence{};
 };
 
-constexpr const char *noise_sentence =
-    "--noise-threshold above 0 compares pixels of a whole picture, without --tile, --sample-range, --aov, --max-error "
-    "and --max-time.";
-constexpr const char *part_sentence =
-    "--tile and --sample-range write parts of a picture to OUT.exr, without --debug, --aov and --resume.";
-
-constexpr const char *checkpoint_sentence =
-    "--checkpoint writes a part of a picture to OUT.checkpoint.exr, without a PNG, --debug, --aov, --noise-threshold, "
-    "--time-limit, --max-error and --max-time.";
+bool compares_pixels(const RenderOptions &options)
+{
+  return options.engine_settings().noise_threshold > 0.0F;
+}
 
 std::vector<Exclusion> exclusions()
 {
   // Options that they choose themselves, and options that change a picture so that its error cannot be measured.
   std::vector<std::string> chosen = {"--samples",    "--time-limit", "--debug",        "--frames",
                                      "--background", "--tile",       "--sample-range", "--aov"};
+  const std::string chosen_sentence = fmt::format(
+      "--max-error and --max-time choose the samples and shadows of one whole picture, without {} and the "
+      "options of shadows.",
+      fmt::join(chosen, ", "));
   eevee::ShadowSettings::for_each_property([&](const auto &row) {
     if (!row.option.empty()) {
       chosen.push_back("--" + std::string(row.option));
     }
   });
-  return {{{"--max-error"}, {"--max-time"}, "--max-error and --max-time exclude each other."},
-          {{"--max-error", "--max-time"},
-           chosen,
-           "--max-error and --max-time choose the samples and shadows of one whole picture, without --samples, "
-           "--time-limit, --debug, --frames, --background, --tile, --sample-range, --aov and the options of shadows."},
-          {{"--time-limit"},
-           {"--tile", "--sample-range"},
-           "--time-limit excludes --tile and --sample-range, whose parts need a known number of samples."},
-          {{"--repeat"}, {"--frames"}, "--repeat excludes --frames."},
-          {{"--shutter"}, {"--aov", "--debug"}, "--shutter excludes --aov and --debug, which show one time."},
-          {{"--debug"}, {"--aov"}, "--debug excludes --aov."}};
+  return {{.is_broken =
+               [](const RenderOptions &options) {
+                 const bool is_resumed = options.frames.is_resumed && options.plan_id.empty();
+                 return options.is_part() &&
+                        (options.is_png() || !options.debug.empty() || !options.aov.empty() || is_resumed);
+               },
+           .sentence =
+               "--tile and --sample-range write parts of a picture to OUT.exr, without --debug, --aov and --resume."},
+          {.is_broken =
+               [](const RenderOptions &options) {
+                 return options.has_checkpoint &&
+                        (options.is_png() || !options.debug.empty() || !options.aov.empty() ||
+                         compares_pixels(options) || options.choice.is_asked() || std::isfinite(options.seconds_max));
+               },
+           .sentence = "--checkpoint writes a part of a picture to OUT.checkpoint.exr, without a PNG, --debug, --aov, "
+                       "--noise-threshold, --time-limit, --max-error and --max-time."},
+          {.is_broken =
+               [](const RenderOptions &options) {
+                 const bool is_whole = !options.is_part() && options.aov.empty() && !options.choice.is_asked();
+                 return !is_whole && compares_pixels(options);
+               },
+           .sentence = "--noise-threshold above 0 compares pixels of a whole picture, without --tile, --sample-range, "
+                       "--aov, --max-error and --max-time."},
+          {.first = {"--max-error"},
+           .second = {"--max-time"},
+           .sentence = "--max-error and --max-time exclude each other."},
+          {.first = {"--max-error", "--max-time"}, .second = chosen, .sentence = chosen_sentence},
+          {.first = {"--time-limit"},
+           .second = {"--tile", "--sample-range"},
+           .sentence = "--time-limit excludes --tile and --sample-range, whose parts need a known number of samples."},
+          {.first = {"--repeat"}, .second = {"--frames"}, .sentence = "--repeat excludes --frames."},
+          {.first = {"--shutter"},
+           .second = {"--aov", "--debug"},
+           .sentence = "--shutter excludes --aov and --debug, which show one time."},
+          {.first = {"--debug"}, .second = {"--aov"}, .sentence = "--debug excludes --aov."}};
 }
 
 /** false also where the command does not have the option. */
@@ -84,12 +111,9 @@ void check_exclusions(const CLI::App &command)
 
 std::string exclusions_text(const CLI::App &command)
 {
-  std::vector<std::string> sentences = {part_sentence, checkpoint_sentence, noise_sentence};
-  for (const Exclusion &exclusion : exclusions()) {
-    sentences.push_back(exclusion.sentence);
-  }
   std::string text = "Options that do not go together:";
-  for (const std::string &sentence : sentences) {
+  for (const Exclusion &exclusion : exclusions()) {
+    const std::string &sentence = exclusion.sentence;
     bool has_all = true;
     for (std::size_t at = 0; (at = sentence.find("--", at)) != sentence.npos; at++) {
       has_all &= command.get_option_no_throw(sentence.substr(at, sentence.find_first_of(" ,.", at) - at)) != nullptr;
@@ -183,16 +207,10 @@ void RenderOptions::check() const
   if (output.empty() && has_picture()) {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
-  if (is_part() && (is_png() || !debug.empty() || !aov.empty() || (frames.is_resumed && plan_id.empty()))) {
-    throw UsageError(part_sentence);
-  }
-  if (has_checkpoint && (is_png() || !debug.empty() || !aov.empty() || engine_settings().noise_threshold > 0.0F ||
-                         choice.is_asked() || std::isfinite(seconds_max))) {
-    throw UsageError(checkpoint_sentence);
-  }
-  const bool is_whole = !is_part() && aov.empty() && !choice.is_asked();
-  if (!is_whole && engine_settings().noise_threshold > 0.0F) {
-    throw UsageError(noise_sentence);
+  for (const Exclusion &exclusion : exclusions()) {
+    if (exclusion.is_broken != nullptr && exclusion.is_broken(*this)) {
+      throw UsageError(exclusion.sentence);
+    }
   }
   static_cast<void>(region());
   static_cast<void>(sample_bounds());
@@ -248,6 +266,9 @@ static std::string settings_text(const CLI::App &command)
   };
   eevee::Settings::for_each_property(add);
   eevee::ShadowSettings::for_each_property(add);
+  render_scene::Display::for_each_property(add);
+  gltf::ImportOptions::for_each_property(add);
+  scene::Camera::for_each_property(add);
   std::string text;
   for (const CLI::Option *option : command.get_options()) {
     const std::string name = option->get_name();

@@ -24,27 +24,6 @@ namespace gnomon::cli {
 template <typename Value>
 inline constexpr bool is_integer = std::is_integral_v<Value> && !std::is_same_v<Value, bool>;
 
-/** \a value as an option takes it. */
-template <typename Value>
-[[nodiscard]] std::string value_text(const scene::Description &row, const Value &value)
-{
-  if constexpr (std::is_enum_v<Value>) {
-    return std::string(scene::words<Value>[std::size_t(value)]);
-  }
-  else if constexpr (std::is_same_v<Value, bool>) {
-    return std::string(row.switch_words[std::size_t(value)]);
-  }
-  else if constexpr (std::is_same_v<Value, std::string>) {
-    return value;
-  }
-  else if constexpr (std::is_same_v<Value, eevee::PcfKernel>) {
-    return eevee::text_of(value);
-  }
-  else {
-    return fmt::format("{:g}", double(value) * scene::shown_unit(row).factor);
-  }
-}
-
 /** The kind of text that an option takes: "INT", "FLOAT" or "TEXT". */
 template <typename Value>
 inline constexpr const char *type_text = is_integer<Value>                 ? "INT"
@@ -65,9 +44,8 @@ template <typename Value>
   else if constexpr (std::is_arithmetic_v<Value>) {
     const scene::ShownLimits limits = scene::shown_limits(row, is_integer<Value>);
     const std::string_view unit = scene::shown_unit(row).text;
-    return (limits.max < scene::float_max ? fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max)
-                                          : fmt::format("at least {:g}", limits.min)) +
-           (unit.empty() ? "" : " ") + std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0");
+    return fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max) + (unit.empty() ? "" : " ") +
+           std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0");
   }
   if (!row.automatic.empty()) {
     words.push_back(row.automatic);
@@ -220,11 +198,12 @@ class SettingOptions {
       set->defaults.resize(defaults_.size());
     }
     set->sentences += (set->sentences.empty() ? "" : " ") + std::string(row.sentence);
+    set->sentences += row.makes_picture ? "" : " The picture does not depend on it.";
     for (std::size_t i = 0; i < defaults_.size(); i++) {
       const Value &value = access(defaults_[i].settings);
       const bool is_zero = value == Value() && !row.zero.empty() && row.min > 0.0;
       set->defaults[i] +=
-          (set->defaults[i].empty() ? "" : ", ") + (is_zero ? std::string(row.zero) : value_text(row, value));
+          (set->defaults[i].empty() ? "" : ", ") + (is_zero ? std::string(row.zero) : scene::value_text(row, value));
     }
     set->is_right.push_back([row](const std::string &text) { return parse_value<Value>(row, text).has_value(); });
     set->apply.push_back([row, access](const std::string &text, T &settings) {

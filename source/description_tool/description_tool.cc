@@ -135,9 +135,9 @@ void print_properties_page()
   print_properties<scene::LampShadow, scene::LampKind>("Shadow of a lamp");
   print_properties<scene::Camera, scene::CameraKind>("Camera");
   print_properties<scene::Material>("Material");
-  print_header("Textures of a material", {"Python", "colours"});
+  print_header("Textures of a material", {"Python", "colours", "file"});
   for (const scene::TextureInput &input : scene::texture_inputs) {
-    print_row({code(input.name), input.is_color ? "sRGB" : "linear"});
+    print_row({code(input.name), input.is_color ? "sRGB" : "linear", code(input.path)});
   }
   print_properties<scene::TextureSlot>("Texture slot");
   print_properties<scene::Node>("Node");

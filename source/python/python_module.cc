@@ -246,9 +246,8 @@ bool draw(Renderer &renderer, double seconds, std::uint32_t framebuffer, const g
                       .origin_px = glm::ivec2(place),
                       .size_px = {place.z, place.w},
                       .encoding = draw::Encoding(word - encoding_words.begin()),
-                      .view_transform = display.view_transform,
-                      .exposure = display.exposure,
                       .composition = is_over ? draw::Composition::Over : draw::Composition::Replace};
+  set_display(target, display);
   if (clip_from_view) {
     target.depth = draw::HostDepth{.clip_from_view = *clip_from_view};
   }

@@ -24,6 +24,12 @@ struct Display {
   static constexpr void for_each_property(Visit &&visit);
 };
 
+inline void set_display(draw::Target &target, const Display &display)
+{
+  target.view_transform = display.view_transform;
+  target.exposure = display.exposure;
+}
+
 template <typename Visit>
 constexpr void Display::for_each_property(Visit &&visit)
 {

@@ -70,7 +70,7 @@ static glm::vec3 absorption(const scene::Material &material)
 static float thickness(const scene::Material &material)
 {
   // NaN becomes the first argument.
-  return std::clamp(std::max(0.0F, material.thickness), 0.0F, 1e9F);
+  return std::clamp(std::max(0.0F, material.thickness), 0.0F, float(scene::number_max));
 }
 
 float transmitted_part(const scene::Material &material)
@@ -195,7 +195,7 @@ shared::LayerData layer_data(const scene::Material &material)
   data.coat_normal_scale = material.coat_normal_scale;
   data.transmission = std::clamp(std::max(0.0F, material.transmission), 0.0F, 1.0F);
   data.thickness = thickness(material);
-  data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);
+  data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, float(scene::number_max));
   data.absorption = absorption(material);
   write_uv_rows(material, FULL_TEXTURE_COUNT, data.uv_rows);
   return data;

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include <array>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -129,6 +130,7 @@ constexpr void Lamp::for_each_property(Visit &&visit)
                  {.name = "intensity",
                   .key = "power",
                   .label = "Power",
+                  .max = light_max,
                   .extra_kinds = bits(Area),
                   .path = "intensity",
                   .is_animated = true,
@@ -393,7 +395,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                  {.name = "half_width",
                   .label = "Half width",
                   .unit = "m",
-                  .min = -float_max,
+                  .min = -number_max,
                   .least = smallest_length,
                   .kinds = bits(Orthographic),
                   .path = "orthographic/xmag",
@@ -404,7 +406,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                  {.name = "half_height",
                   .label = "Half height",
                   .unit = "m",
-                  .min = -float_max,
+                  .min = -number_max,
                   .least = smallest_length,
                   .kinds = bits(Orthographic),
                   .path = "orthographic/ymag",
@@ -415,7 +417,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                  {.name = "near",
                   .label = "Near",
                   .unit = "m",
-                  .min = -float_max,
+                  .min = -number_max,
                   .path = "znear",
                   .aspect = lens,
                   .sentence = "Distance of the near plane; above 0 where perspective. In files at least 0."}));
@@ -477,7 +479,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                  {.name = "aperture_rotation",
                   .label = "Aperture rotation",
                   .unit = "rad",
-                  .min = -float_max,
+                  .min = -number_max,
                   .kinds = bits(Perspective),
                   .extra_kinds = bits(Perspective),
                   .aspect = lens,
@@ -850,6 +852,7 @@ constexpr void Material::for_each_property(Visit &&visit)
   visit(property(&Material::emissive, {.name = "emissive",
                                        .label = "Emission",
                                        .unit = "W/(sr m²)",
+                                       .max = light_max,
                                        .path = "emissiveFactor",
                                        .is_animated = true,
                                        .aspect = unsigned(Surface),
@@ -873,27 +876,74 @@ struct TextureInput {
   TextureSlot Material::*slot;
   /** Name of the slot, and of its sampler in shaders. */
   std::string_view name;
+  /** Place of the slot in a material of glTF, with '/' between keys. */
+  std::string_view path;
   /** Red, green and blue are encoded as sRGB. */
   bool is_color;
+  /** Files may use more uv sets than a mesh has. The sets of slots with the lowest ranks are kept. */
+  int rank;
+  /** The texel of the image that replaces a missing or damaged one, and a description of its appearance. */
+  std::array<std::uint8_t, 4> stand_in{255, 255, 255, 255};
+  std::string_view stand_in_name = "the factor alone";
+
+  /** Name of the slot in glTF: the last key of the path. */
+  [[nodiscard]] constexpr std::string_view key() const
+  {
+    return path.substr(path.rfind('/') + 1);
+  }
 };
 
 /** All texture slots. */
 inline constexpr std::array<TextureInput, 15> texture_inputs = {{
-    {&Material::base_color_texture, "base_color_texture", true},
-    {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
-    {&Material::normal_texture, "normal_texture", false},
-    {&Material::occlusion_texture, "occlusion_texture", false},
-    {&Material::emissive_texture, "emissive_texture", true},
-    {&Material::specular_texture, "specular_texture", false},
-    {&Material::specular_color_texture, "specular_color_texture", true},
-    {&Material::coat_texture, "coat_texture", false},
-    {&Material::coat_roughness_texture, "coat_roughness_texture", false},
-    {&Material::sheen_color_texture, "sheen_color_texture", true},
-    {&Material::sheen_roughness_texture, "sheen_roughness_texture", false},
-    {&Material::anisotropy_texture, "anisotropy_texture", false},
-    {&Material::coat_normal_texture, "coat_normal_texture", false},
-    {&Material::transmission_texture, "transmission_texture", false},
-    {&Material::thickness_texture, "thickness_texture", false},
+    {&Material::base_color_texture,
+     "base_color_texture",
+     "pbrMetallicRoughness/baseColorTexture",
+     true,
+     1,
+     {255, 0, 255, 255},
+     "a checkerboard"},
+    {&Material::metallic_roughness_texture,
+     "metallic_roughness_texture",
+     "pbrMetallicRoughness/metallicRoughnessTexture",
+     false,
+     5,
+     {255, 255, 0, 255},
+     "no metal, of the factor's roughness"},
+    {&Material::normal_texture, "normal_texture", "normalTexture", false, 3, {128, 128, 255, 255}, "a flat surface"},
+    {&Material::occlusion_texture,
+     "occlusion_texture",
+     "occlusionTexture",
+     false,
+     11,
+     {255, 255, 255, 255},
+     "no occlusion"},
+    {&Material::emissive_texture, "emissive_texture", "emissiveTexture", true, 2, {0, 0, 0, 255}, "no emission"},
+    {&Material::specular_texture, "specular_texture", "extensions/KHR_materials_specular/specularTexture", false, 10},
+    {&Material::specular_color_texture, "specular_color_texture",
+     "extensions/KHR_materials_specular/specularColorTexture", true, 9},
+    {&Material::coat_texture, "coat_texture", "extensions/KHR_materials_clearcoat/clearcoatTexture", false, 6},
+    {&Material::coat_roughness_texture, "coat_roughness_texture",
+     "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", false, 13},
+    {&Material::sheen_color_texture, "sheen_color_texture", "extensions/KHR_materials_sheen/sheenColorTexture", true,
+     7},
+    {&Material::sheen_roughness_texture, "sheen_roughness_texture",
+     "extensions/KHR_materials_sheen/sheenRoughnessTexture", false, 14},
+    {&Material::anisotropy_texture,
+     "anisotropy_texture",
+     "extensions/KHR_materials_anisotropy/anisotropyTexture",
+     false,
+     8,
+     {255, 128, 255, 255}},
+    {&Material::coat_normal_texture,
+     "coat_normal_texture",
+     "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
+     false,
+     12,
+     {128, 128, 255, 255},
+     "a coat as smooth as the mesh"},
+    {&Material::transmission_texture, "transmission_texture",
+     "extensions/KHR_materials_transmission/transmissionTexture", false, 4},
+    {&Material::thickness_texture, "thickness_texture", "extensions/KHR_materials_volume/thicknessTexture", false, 15},
 }};
 
 /** A position in the scene with its contents. Nodes form trees: Scene::add(Node, parent). */

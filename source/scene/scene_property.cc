@@ -16,13 +16,14 @@ ShownLimits shown_limits(const Description &description, bool is_whole)
 
 std::string range_text(const Description &description, double factor)
 {
-  if (description.max < float_max) {
-    return fmt::format("from {:g} to {:g}", factor * description.min, factor * description.max);
-  }
-  if (description.least > 0.0) {
-    return fmt::format("at least {0:g} or at most -{0:g}", factor * description.least);
-  }
-  return description.min <= -float_max ? "a finite number" : fmt::format("at least {:g}", factor * description.min);
+  const bool is_mirrored = description.least > 0.0;
+  return fmt::format("from {:g} to {:g}{}", factor * (is_mirrored ? description.least : description.min),
+                     factor * description.max, is_mirrored ? ", or the negative of such a number" : "");
+}
+
+std::string number_text(const Description &description, double value)
+{
+  return fmt::format("{:g}", value * shown_unit(description).factor);
 }
 
 std::string range_fault(const Description &description, double value)

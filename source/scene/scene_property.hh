@@ -17,6 +17,14 @@ namespace gnomon::scene {
 
 inline constexpr double float_max = std::numeric_limits<float>::max();
 
+/**
+ * Greatest absolute value of a number, if its row has no limit of its own. Products of a few such numbers, such as
+ * areas and volumes, are finite in float.
+ */
+inline constexpr double number_max = 1e12;
+/** Greatest intensity, radiance and strength of light. A hundred million of them are finite in float. */
+inline constexpr double light_max = 1e30;
+
 /** A bit for each of \a values of an enumeration. */
 template <typename... Values>
 [[nodiscard]] constexpr unsigned bits(Values... values)
@@ -45,7 +53,7 @@ struct Description {
   std::array<std::string_view, 2> switch_words{"off", "on"};
   /** Limits of a number, and of each component of a vector. */
   double min = 0.0;
-  double max = float_max;
+  double max = number_max;
   /** The least absolute value of a number that may be negative. */
   double least = 0.0;
   /** Meaning of 0, where it is allowed beside the limits. */
@@ -136,12 +144,40 @@ struct ShownLimits {
 [[nodiscard]] ShownLimits shown_limits(const Description &description, bool is_whole);
 
 /**
- * The limits as text: "from 0 to 1", "at least 0", "a finite number". \a factor: of the limits, for another unit than
- * that of the value.
+ * The limits as text: "from 0 to 1", "from 1 to 10, or the negative of such a number". \a factor: of the limits, for
+ * another unit than that of the value.
  */
 [[nodiscard]] std::string range_text(const Description &description, double factor = 1.0);
 /** That \a value is out of the limits: the name, the value and the limits. */
 [[nodiscard]] std::string range_fault(const Description &description, double value);
+
+/** \a value in the shown unit, as options take it. */
+[[nodiscard]] std::string number_text(const Description &description, double value);
+
+/** The words for the values of an enumeration, in their order: in files, options and scripts. */
+template <typename Enum>
+inline constexpr std::array<std::string_view, 0> words{};
+
+/** \a value of the property \a row, as an option takes it. Types of their own have a function text_of. */
+template <typename Value>
+[[nodiscard]] std::string value_text(const Description &row, const Value &value)
+{
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(words<Value>[std::size_t(value)]);
+  }
+  else if constexpr (std::is_same_v<Value, bool>) {
+    return std::string(row.switch_words[std::size_t(value)]);
+  }
+  else if constexpr (std::is_same_v<Value, std::string>) {
+    return value;
+  }
+  else if constexpr (requires { text_of(value); }) {
+    return text_of(value);
+  }
+  else {
+    return number_text(row, double(value));
+  }
+}
 
 /** Calls \a visit with each number of \a value as a double. Enumerations, bools, texts and absent values have none. */
 template <typename Value, typename Visit>
@@ -216,8 +252,13 @@ template <typename T, typename Access>
   return PartProperty<std::decay_t<std::invoke_result_t<Access, T &>>, Access>{description, access};
 }
 
-/** The words for the values of an enumeration, in their order: in files, options and scripts. */
-template <typename Enum>
-inline constexpr std::array<std::string_view, 0> words{};
+/** The description of the property of a T that is named \a name. \pre there is one */
+template <typename T>
+[[nodiscard]] constexpr Description description_of(std::string_view name)
+{
+  Description found;
+  T::for_each_property([&](const Description &row) { found = row.name == name ? row : found; });
+  return found;
+}
 
 }  // namespace gnomon::scene

@@ -52,21 +52,20 @@ struct World {
 template <typename Visit>
 constexpr void World::for_each_property(Visit &&visit)
 {
-  constexpr double factor_max = 1e30;
   visit(property(&World::color,
                  {.name = "color",
                   .label = "Color",
-                  .max = factor_max,
+                  .max = light_max,
                   .sentence = "Linear red, green and blue: factors of the picture, or without a picture a radiance, "
                               "W/(sr m²)."}));
   visit(property(&World::strength,
-                 {.name = "strength", .label = "Strength", .max = factor_max, .sentence = "Factor of the colour."}));
+                 {.name = "strength", .label = "Strength", .max = light_max, .sentence = "Factor of the colour."}));
   visit(
       property(&World::rotation,
                {.name = "rotation",
                 .label = "Rotation",
                 .unit = "rad",
-                .min = -float_max,
+                .min = -number_max,
                 .sentence = "Angle by which the picture turns around the y axis. At π/2, the texel at +x is at -z."}));
 }
 

@@ -78,11 +78,14 @@ void add_lamp_inputs(std::vector<StabilityCase> &cases)
   // Values whose products overflow float, negative values, and values beyond float.
   const Numbers outside = inputs({-1e300, -1.0, -1e-300, 1.01e12, 1e38, 1e39, 1e300}, rejected);
   const Numbers not_negative = inputs({0.0, 5e-324, 1e-300, 1e-40, 1.0, 1e12}, accepted) + outside;
+  // Intensities have a limit of their own.
+  const Numbers intensity = inputs({0.0, 5e-324, 1e-300, 1e-40, 1.0, 1e12, 1e30}, accepted) +
+                            inputs({-1e300, -1.0, -1e-300, 1e38, 1e39}, rejected);
   const Numbers length =
       inputs({1e-12, 1.0, 1e12}, accepted) + inputs({5e-324, 1e-300, 1e-40, 9e-13}, rejected) + outside;
   for (const auto &[light, kind] : {std::pair(0, "point"), {1, "sun"}, {2, "spot"}}) {
     cases.push_back(number_case(fmt::format("{} intensity", kind), light_path(light, "intensity"), "cd or lux",
-                                "intensity is", not_negative));
+                                "intensity is", intensity));
   }
   cases.push_back(
       number_case("point range", light_path(0, "range"), "m", "range is", length + inputs({0.0}, accepted)));
@@ -123,7 +126,7 @@ void add_lamp_inputs(std::vector<StabilityCase> &cases)
        inputs({0.0, 1e-300, 45.0}, accepted) + inputs({-1e-300, -1.0, 45.1, 1e300}, rejected)},
       {Panel, "gnomon_size_x", "m", length},
       {Panel, "gnomon_size_y", "m", length},
-      {Panel, "gnomon_power", "W", not_negative},
+      {Panel, "gnomon_power", "W", intensity},
   };
   for (const Extra &extra : extras) {
     cases.push_back(number_case(extra.key, extra_path(extra.node, extra.key), extra.unit,
@@ -180,8 +183,10 @@ void add_material_inputs(std::vector<StabilityCase> &cases)
   const std::string material = "/materials/0/";
   const Numbers share = inputs({0.0, 5e-324, 1e-40, 1.0}, Expected::Accepted) +
                         inputs({-1e300, -1.0, -1e-300, 1.0001, 1e39, 1e300}, Expected::Reported);
-  const Numbers open =
-      inputs({0.0, 5e-324, 1.0, 1e9}, Expected::Accepted) + inputs({-1.0, 1.01e9, 1e39, 1e300}, Expected::Reported);
+  const auto open = [](double max) {
+    return inputs({0.0, 5e-324, 1.0, max}, Expected::Accepted) +
+           inputs({-1.0, 1.01 * max, 1e39, 1e300}, Expected::Reported);
+  };
   const auto add = [&](const std::string &name, const std::string &path, const Numbers &values) {
     cases.push_back(number_case(name, material + path, "factor", path.substr(path.rfind('/') + 1) + " is", values));
   };
@@ -190,9 +195,9 @@ void add_material_inputs(std::vector<StabilityCase> &cases)
   add("alpha cutoff", "alphaCutoff",
       inputs({0.0, 5e-324, 0.5, 1.0, 2.0}, Expected::Accepted) + inputs({-1.0, 2.01, 1e39, 1e300}, Expected::Reported));
   add("specular", "extensions/KHR_materials_specular/specularFactor", share);
-  add("emissive strength", "extensions/KHR_materials_emissive_strength/emissiveStrength", open);
+  add("emissive strength", "extensions/KHR_materials_emissive_strength/emissiveStrength", open(scene::light_max));
   add("ior", "extensions/KHR_materials_ior/ior",
-      inputs({0.0, 1.0, 1.5, 1e9, 1e300}, Expected::Accepted) +
+      inputs({0.0, 1.0, 1.5, 1e12, 1e300}, Expected::Accepted) +
           inputs({-1e300, -1.0, 1e-300, 0.99}, Expected::Reported));
   const auto add_color = [&](const std::string &name, const std::string &path, const json &color,
                              const Numbers &values) {
@@ -208,7 +213,8 @@ void add_material_inputs(std::vector<StabilityCase> &cases)
   };
   add_color("base color", "pbrMetallicRoughness/baseColorFactor", {0.5, 0.5, 0.5, 1.0}, share);
   add_color("emissive", "emissiveFactor", {0.5, 0.5, 0.5}, share);
-  add_color("specular color", "extensions/KHR_materials_specular/specularColorFactor", {0.5, 0.5, 0.5}, open);
+  add_color("specular color", "extensions/KHR_materials_specular/specularColorFactor", {0.5, 0.5, 0.5},
+            open(scene::number_max));
 }
 
 /** A valid triangle, and a second one whose last corner has the coordinate \a x. */

@@ -218,7 +218,6 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
   add("lamp's filter", "rad", "lamp 'lamp0': ", scene::ShadowKind::Evsm,
       inputs({0, 0.785}, Expected::Accepted) + inputs({-1, 0.786, 1e38}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.filter_angle = float(v); });
-  // The importer's length_range.
   add("lamp's clip distances", "m", "", scene::ShadowKind::Hard,
       inputs({1e-12, 1e-6, 1.0, 1e6, 1e12}, Expected::Accepted), [](scene::LampShadow &shadow, double v) {
         shadow.clip_start = float(v);

@@ -143,9 +143,9 @@ Properties<Placement> make_placement_properties()
         }));
     made.numbers.back().is_color = false;
   };
-  add("position", "Position", "m", 1e9, &Placement::position);
+  add("position", "Position", "m", scene::number_max, &Placement::position);
   add("rotation", "Rotation", "°", 360.0, &Placement::rotation);
-  add("scale", "Scale", "", 1e6, &Placement::scale);
+  add("scale", "Scale", "", scene::number_max, &Placement::scale);
   return made;
 }
 

@@ -27,7 +27,11 @@ void add_pcf_properties(Properties<WindowSettings> &made)
   kernel.group = eevee::shadow_settings_group.data();
   made.choices.push_back(std::move(kernel));
   NumberProperty<WindowSettings> lookups = number_property<WindowSettings>(
-      {.name = "pcf_lookups", .label = "PCF lookups", .group = eevee::shadow_settings_group, .min = 1, .max = 64},
+      {.name = "pcf_lookups",
+       .label = "PCF lookups",
+       .group = eevee::shadow_settings_group,
+       .min = 1,
+       .max = eevee::PcfKernel::taps_max},
       [](auto &settings) -> auto & { return settings.eevee.shadow.pcf.taps; });
   lookups.applies = [](const WindowSettings &settings) { return settings.eevee.shadow.pcf.width == 0; };
   made.numbers.push_back(std::move(lookups));

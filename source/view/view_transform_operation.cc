@@ -190,7 +190,7 @@ std::optional<double> TransformOperation::typed() const
       value += place * (character - '0');
     }
   }
-  value = std::min(value, 1e9);
+  value = std::min(value, scene::number_max);
   return typed_.starts_with('-') ? -value : value;
 }
 

@@ -186,8 +186,7 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   }
   draw::Target target = canvas_.target();
   target.composition = draw::Composition::Over;
-  target.view_transform = document.settings().display.view_transform;
-  target.exposure = document.settings().display.exposure;
+  set_display(target, document.settings().display);
   const auto now = std::chrono::steady_clock::now();
   draw_picture(document, *one, budget_seconds, target);
   if (std::exchange(picture_, viewport_->restart_count()) != viewport_->restart_count()) {

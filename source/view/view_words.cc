@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view_words.hh"
 
+#include "scene_property.hh"
+
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -43,7 +45,7 @@ double number(const std::string &word)
   double value = 0.0;
   const char *end = word.data() + word.size();
   const auto [after, error] = std::from_chars(word.data(), end, value);
-  if (error != std::errc() || after != end || !(std::abs(value) < 1e12)) {
+  if (error != std::errc() || after != end || !(std::abs(value) <= scene::number_max)) {
     throw std::runtime_error(fmt::format("'{}' is not a number", word));
   }
   return value;

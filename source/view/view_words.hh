@@ -27,7 +27,7 @@ struct ScriptLine {
  */
 [[nodiscard]] std::vector<ScriptLine> parse_script(std::string_view text);
 
-/** A finite number with an absolute value of at most 1e12. */
+/** A number with an absolute value of at most scene::number_max. */
 [[nodiscard]] double number(const std::string &word);
 [[nodiscard]] int integer(const std::string &word, int min, int max);
 /** Pixel coordinates, counted from 0. */

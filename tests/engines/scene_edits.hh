@@ -58,6 +58,10 @@ inline EditLimits edit_limits(const scene::Description &row)
   if (row.unit == "px") {
     return {16.0, 100.0};
   }
+  // Less than the layers of a small picture need.
+  if (row.unit == "bytes") {
+    return {5e4, 1e5};
+  }
   const double least = row.min > 0.0 ? std::max(row.min, 0.01) : std::max(row.min, -3.0);
   return {std::min(least, row.max), std::min(row.max, 100.0)};
 }

@@ -32,7 +32,7 @@ class Description {
       }
     }
     if (const std::optional<scene::World> &world = scene.world()) {
-      description.line("world{} {:a} {:a}", numbers(world->color, 3), world->strength, world->rotation);
+      description.line("world{}", properties(*world));
       if (const scene::WorldPicture *picture = world->picture.get()) {
         description.line("  picture {}x{} {}", picture->width, picture->height, values(picture->texels));
       }
@@ -63,6 +63,33 @@ class Description {
     for (int i = 0; i < count; i++) {
       text += fmt::format(" {:a}", value[i]);
     }
+    return text;
+  }
+  template <typename Value>
+  static std::string text_of(const Value &value)
+  {
+    if constexpr (requires { value.has_value(); }) {
+      return value ? text_of(*value) : " none";
+    }
+    else if constexpr (std::is_same_v<Value, std::string>) {
+      return " '" + value + '\'';
+    }
+    else if constexpr (std::is_enum_v<Value> || std::is_integral_v<Value>) {
+      return fmt::format(" {}", int(value));
+    }
+    else {
+      std::string text;
+      scene::for_each_number(value, [&](double number) { text += fmt::format(" {:a}", number); });
+      return text;
+    }
+  }
+  /** All properties, with their names. */
+  template <typename Part>
+  static std::string properties(const Part &part)
+  {
+    std::string text;
+    Part::for_each_property(
+        [&](const auto &row) { text += fmt::format(" {}{}", row.name, text_of(part.*row.member)); });
     return text;
   }
   template <typename T>
@@ -102,14 +129,12 @@ class Description {
       meshes += ' ' + number(meshes_, mesh,
                              [this](const scene::Mesh &value, const std::string &name) { add_mesh(value, name); });
     }
-    line("{} node '{}' visible {} casts {} receives {} meshes{} matrix{}", depth, node.name, node.is_visible,
-         node.casts_shadow, node.receives_shadow, meshes, matrix);
+    line("{} node{} meshes{} matrix{}", depth, properties(node), meshes, matrix);
     if (const scene::Lamp *lamp = scene_.lamps().find(node.lamp)) {
-      add_lamp(*lamp);
+      line("  lamp{} shadow{}", properties(*lamp), properties(lamp->shadow));
     }
     if (const scene::Camera *camera = scene_.cameras().find(node.camera)) {
-      line("  camera '{}' {} {:a} {:a} {:a} {:a} {:a} {:a}", camera->name, int(camera->kind), camera->vertical_angle,
-           camera->aspect, camera->half_width, camera->half_height, camera->near, camera->far);
+      line("  camera{}", properties(*camera));
     }
     for (Handle<scene::Node> child = scene_.first_child(handle); child; child = scene_.next_sibling(child)) {
       add_node(child, depth + 1);
@@ -131,17 +156,9 @@ class Description {
     std::string textures;
     for (const scene::TextureInput &input : scene::texture_inputs) {
       const scene::TextureSlot &slot = m.*input.slot;
-      textures += fmt::format(" {} {} {:a}{}{}", texture_number(slot), slot.uv_set, slot.rotation,
-                              numbers(slot.offset, 2), numbers(slot.scale, 2));
+      textures += fmt::format(" {}{}", texture_number(slot), properties(slot));
     }
-    line(
-        "material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {} {:a} {:a}{} {:a} {:a} {:a} {:a} "
-        "{:a}{} {:a} {:a} {:a}",
-        number_of, m.name, numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular,
-        numbers(m.specular_color, 3), numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided,
-        m.normal_scale, m.occlusion_strength, m.is_unlit, m.coat, m.coat_roughness, numbers(m.sheen_color, 3),
-        m.sheen_roughness, m.transmission, m.thickness, m.ior, m.attenuation_distance, numbers(m.attenuation_color, 3),
-        m.anisotropy, m.anisotropy_rotation, m.coat_normal_scale);
+    line("material {}{} textures{}", number_of, properties(m), textures);
   }
 
   std::string texture_number(const scene::TextureSlot &slot)
@@ -153,18 +170,6 @@ class Description {
       line("texture {} image {} {} {} {} {} {}", name, image, int(t.wrap_u), int(t.wrap_v), int(t.magnified),
            int(t.minified), int(t.mip));
     });
-  }
-
-  void add_lamp(const scene::Lamp &l)
-  {
-    const auto optional = [](const auto &value) { return value ? fmt::format("{:a}", double(*value)) : "none"; };
-    line("  lamp '{}' {}{} {:a} {:a} {:a} {:a} {:a} {:a} {} {:a} {:a}", l.name, int(l.kind), numbers(l.color, 3),
-         l.intensity, l.radius, l.angle, l.spot_outer_angle, l.spot_blend, l.range, int(l.area_shape), l.area_size_x,
-         l.area_size_y);
-    line("  shadow {} {} {} {} {} {} {} {} {}", l.shadow.kind ? int(*l.shadow.kind) : -1, optional(l.shadow.size),
-         optional(l.shadow.exponent), optional(l.shadow.bias), optional(l.shadow.clip_start),
-         optional(l.shadow.clip_end), optional(l.shadow.filter_angle), optional(l.shadow.esm_size),
-         l.shadow.esm_format ? int(*l.shadow.esm_format) : -1);
   }
 };
 
@@ -216,9 +221,43 @@ class Values {
   {
     return {(*this)(0, high), (*this)(0, high), (*this)(0, high)};
   }
+  /** Sets all properties that things of \a kind have in files. */
+  template <typename Part>
+  void set_all(Part &part, unsigned kind)
+  {
+    Part::for_each_property([&](const auto &row) {
+      if (row.has_kind(kind) && (!row.path.empty() || row.has_extra(kind))) {
+        set(part.*row.member, row);
+      }
+    });
+  }
 
  private:
   std::mt19937 random_{9};
+
+  template <typename Value>
+  void set(Value &value, const scene::Description &row)
+  {
+    const auto low = float(row.min > 0.0 ? std::max(row.min, 0.01) : std::max(row.min, -3.0));
+    const auto high = float(std::min(row.max, 100.0));
+    if constexpr (requires { value.has_value(); }) {
+      set(value.emplace(), row);
+    }
+    else if constexpr (std::is_same_v<Value, bool>) {
+      value = !value;
+    }
+    else if constexpr (std::is_enum_v<Value>) {
+      value = Value(scene::words<Value>.size() - 1);
+    }
+    else if constexpr (std::is_arithmetic_v<Value>) {
+      value = Value((*this)(low, high));
+    }
+    else if constexpr (!std::is_same_v<Value, std::string>) {
+      for (int i = 0; i < value.length(); i++) {
+        value[i] = (*this)(low, high);
+      }
+    }
+  }
 };
 
 scene::Mesh triangle(const std::string &name, Values &value)
@@ -241,35 +280,18 @@ scene::Lamp lamp_of(scene::LampKind kind, Values &value)
   scene::Lamp lamp;
   lamp.name = fmt::format("lamp of kind {} \"\\ü", int(kind));
   lamp.kind = kind;
-  lamp.color = value.color(3);
-  lamp.intensity = value(0.001F, 1000);
-  const bool is_point = kind == LampKind::Point || kind == LampKind::Spot;
-  if (is_point) {
-    lamp.radius = value(0, 1);
-    lamp.range = value(1, 100);
+  value.set_all(lamp, unsigned(kind));
+  value.set_all(lamp.shadow, unsigned(kind));
+  if (lamp.shadow.clip_start) {
+    lamp.shadow.clip_end = 2.0F * *lamp.shadow.clip_start;
   }
+  // Angles at their limits, which file and scene may round differently.
   if (kind == LampKind::Sun) {
     lamp.angle = float(std::numbers::pi);
+    lamp.shadow.filter_angle = float(std::numbers::pi / 4);
   }
   if (kind == LampKind::Spot) {
     lamp.spot_outer_angle = float(std::numbers::pi / 2);
-    lamp.spot_blend = value(0, 1);
-  }
-  if (kind == LampKind::Area) {
-    lamp.area_shape = scene::AreaShape::Ellipse;
-    lamp.area_size_x = value(0.1F, 3);
-    lamp.area_size_y = value(0.1F, 3);
-  }
-  if (is_point || kind == LampKind::Sun) {
-    lamp.shadow = {scene::ShadowKind::Evsm,
-                   513,
-                   value(0.1F, 99),
-                   value(0, 2),
-                   value(0.01F, 0.1F),
-                   value(10, 20),
-                   kind == LampKind::Sun ? float(std::numbers::pi / 4) : value(0, 0.7F),
-                   65,
-                   scene::EsmFormat::Float};
   }
   return lamp;
 }
@@ -288,41 +310,20 @@ Handle<scene::Material> add_material(Scene &scene, Values &value)
   texture.mip = scene::MipFilter::Nearest;
   scene::Material material;
   material.name = "paint";
-  material.base_color = value.color();
+  value.set_all(material, 0);
   material.alpha = value(0, 1);
-  material.base_color_texture = scene.add(texture);
-  material.metallic = value(0, 1);
-  material.roughness = value(0, 1);
-  material.specular = value(0, 1);
-  material.specular_color = value.color(2);
-  material.emissive = value.color(77);
+  // A test of its own has the index, by which the specular colour is rounded.
+  material.ior = scene::Material().ior;
   material.alpha_mode = scene::AlphaMode::Mask;
-  material.alpha_cutoff = value(0, 1);
-  material.is_double_sided = true;
+  const auto handle = scene.add(texture);
   int set = 0;
   for (const scene::TextureInput &input : scene::texture_inputs) {
     scene::TextureSlot &slot = material.*input.slot;
-    slot = material.base_color_texture;
+    slot = handle;
+    value.set_all(slot, 0);
     slot.uv_set = set;
     set = 1 - set;
-    slot.offset = {value(-1, 1), value(-1, 1)};
-    slot.rotation = value(0, 3);
-    slot.scale = {value(-2, 2), value(1, 2)};
   }
-  material.normal_scale = value(-1, 2);
-  material.occlusion_strength = value(0, 1);
-  material.is_unlit = true;
-  material.coat = value(0, 1);
-  material.coat_roughness = value(0, 1);
-  material.coat_normal_scale = value(-1, 2);
-  material.sheen_color = value.color();
-  material.sheen_roughness = value(0, 1);
-  material.anisotropy = value(0.1F, 1);
-  material.anisotropy_rotation = value(-3, 3);
-  material.transmission = value(0.1F, 1);
-  material.thickness = value(0.1F, 9);
-  material.attenuation_distance = value(0.1F, 9);
-  material.attenuation_color = value.color();
   return scene.add(material);
 }
 
@@ -375,23 +376,9 @@ Scene full_scene()
     scene::Camera camera;
     camera.name = "eye";
     camera.kind = kind;
-    if (kind == scene::CameraKind::Perspective) {
-      camera.vertical_angle = value(0.1F, 1);
-      camera.aspect = value(1, 2);
-      camera.aperture_radius = value(0.01F, 0.1F);
-      camera.focus_distance = value(1, 9);
-      camera.aperture_blades = 7;
-      camera.aperture_rotation = value(-1, 1);
-      camera.aperture_ratio = value(0.5F, 2);
-    }
-    else {
-      camera.half_width = value(1, 2);
-      camera.half_height = value(1, 2);
-      camera.far = value(50, 60);
-    }
+    value.set_all(camera, unsigned(kind));
     camera.near = value(0.01F, 0.1F);
-    camera.shift_x = value(-1, 1);
-    camera.shift_y = value(-1, 1);
+    camera.far = kind == scene::CameraKind::Perspective ? 0.0F : value(50, 60);
     scene::Node node;
     node.name = "stand";
     node.camera = scene.add(camera);
@@ -584,6 +571,166 @@ TEST(GltfExport, UnitsAreThoseOfGltf)
   const json document = json::parse(content_of(folder.path() / "sun.gltf"));
   EXPECT_EQ(document["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"], 1366.0);
   EXPECT_EQ(document["extensionsUsed"], json({"KHR_lights_punctual"}));
+}
+
+/** Sets all numbers of \a value. \return false if it has none. */
+template <typename Value>
+bool set_numbers(Value &value, double number)
+{
+  if constexpr (requires { value.has_value(); }) {
+    return set_numbers(value.emplace(), number);
+  }
+  else if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, float>) {
+    value = Value(number);
+    return true;
+  }
+  else if constexpr (requires {
+                       value.length();
+                       value.x;
+                     }) {
+    value = Value(float(number));
+    return true;
+  }
+  return false;
+}
+
+/** The pointer to a property, or to its first number, in a file. Empty: the file does not have it. */
+std::string pointer_to(const json &document, const scene::Description &row)
+{
+  const std::array places{'/' + std::string(row.path), "/gnomon_" + std::string(row.key_or_name())};
+  const json values = document.flatten();
+  for (const auto &[pointer, value] : values.items()) {
+    for (const std::string &place : places) {
+      if (place != "/" && (pointer.ends_with(place) || pointer.ends_with(place + "/0"))) {
+        return pointer;
+      }
+    }
+  }
+  return {};
+}
+
+/**
+ * Each number of a \a part of a thing of \a kind is read back at its limits, and reported beyond them. \a scene_of: a
+ * scene with the part. \a part_of: the part of such a scene.
+ */
+template <typename Part>
+void expect_limits(Part part, unsigned kind, const std::function<Scene(const Part &)> &scene_of,
+                   const std::function<Part(const Scene &)> &part_of)
+{
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "limit.gltf";
+  Part::for_each_property([&](const auto &row) {
+    auto &member = part.*row.member;
+    const auto before = member;
+    // The planes of a camera limit each other.
+    const bool is_plane = row.name == "near" || row.name == "far";
+    const bool is_in_files = row.has_kind(kind) && (!row.path.empty() || row.has_extra(kind));
+    bool is_written = false;
+    for (const double limit : {row.least > 0.0 ? row.least : row.min, row.max}) {
+      const bool is_max = limit == row.max;
+      if (!is_in_files || (is_plane && !is_max) || !set_numbers(member, limit)) {
+        is_written = true;
+        continue;
+      }
+      SCOPED_TRACE(fmt::format("{} {}", row.name, limit));
+      gltf::export_gltf(scene_of(part), path);
+      const Scene copy = gltf::import_gltf(path);
+      EXPECT_EQ(all_warnings(copy), "");
+      EXPECT_EQ(part_of(copy).*row.member, member);
+      json document = json::parse(content_of(path));
+      const std::string pointer = pointer_to(document, row);
+      if (pointer.empty()) {
+        // The limit is glTF's default.
+        continue;
+      }
+      is_written = true;
+      json &number = document[json::json_pointer(pointer)];
+      const double inside = number;
+      const double step = number.is_number_float() ? 0.01 * std::max(1.0, std::abs(inside)) : 1.0;
+      number = is_max ? inside + step : inside > 0.0 ? 0.5 * inside : inside - step;
+      try {
+        const Scene changed = gltf::import_gltf(folder.write("beyond.gltf", document.dump()));
+        // Any distance beyond the limit stands for no absorption, which needs no warning.
+        EXPECT_TRUE(row.name == "attenuation_distance" || !changed.warnings.empty()) << number;
+        scene::for_each_number(part_of(changed).*row.member,
+                               [&](double value) { EXPECT_TRUE(row.allows(value)) << value; });
+      }
+      catch (const gltf::ImportError &error) {
+        EXPECT_HAS(std::string(error.what()), " must be ");
+      }
+    }
+    EXPECT_TRUE(is_written) << row.name;
+    member = before;
+  });
+}
+
+TEST(GltfExport, NumbersReadBackAtTheirLimitsAndAreReportedBeyondThem)
+{
+  const auto on_node = [](Scene &scene, scene::Node node) {
+    node.name = "node";
+    scene.add(node);
+  };
+  const auto with_lamp = [&](const scene::Lamp &lamp) {
+    Scene scene;
+    on_node(scene, {.lamp = scene.add(lamp)});
+    return scene;
+  };
+  const auto lamp_of_scene = [](const Scene &scene) { return scene.lamps()[scene.lamps().first()]; };
+  for (std::size_t kind = 0; kind < scene::words<scene::LampKind>.size(); kind++) {
+    const scene::Lamp lamp{.name = "lamp", .kind = scene::LampKind(kind)};
+    expect_limits<scene::Lamp>(lamp, unsigned(kind), with_lamp, lamp_of_scene);
+    expect_limits<scene::LampShadow>(
+        {}, unsigned(kind),
+        [&](const scene::LampShadow &shadow) {
+          scene::Lamp shadowed = lamp;
+          shadowed.shadow = shadow;
+          return with_lamp(shadowed);
+        },
+        [&](const Scene &scene) { return lamp_of_scene(scene).shadow; });
+  }
+  for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
+    scene::Camera camera{.name = "eye", .kind = kind};
+    camera.far = kind == scene::CameraKind::Orthographic ? float(scene::number_max) : 0.0F;
+    expect_limits<scene::Camera>(
+        camera, unsigned(kind),
+        [&](const scene::Camera &value) {
+          Scene scene;
+          on_node(scene, {.camera = scene.add(value)});
+          return scene;
+        },
+        [](const Scene &scene) { return scene.cameras()[scene.cameras().first()]; });
+  }
+  // The exporter writes an index apart from the tint, which it multiplies: a black one has any index.
+  for (const bool is_black : {false, true}) {
+    Values value;
+    scene::Mesh mesh = triangle("leaf", value);
+    mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+    mesh.tangents.assign(3, {1, 0, 0, 1});
+    const auto with_material = [&](const scene::Material &material) {
+      Scene scene;
+      scene::Material textured = material;
+      const auto texture = scene.add(scene::Texture{.image = scene.add(scene::Image{"texel", 1, 1, {1, 2, 3, 4}})});
+      for (const scene::TextureInput &input : scene::texture_inputs) {
+        (textured.*input.slot).texture = texture;
+      }
+      scene::Mesh drawn = mesh;
+      drawn.material = scene.add(textured);
+      on_node(scene, {.meshes = {scene.add(drawn)}});
+      return scene;
+    };
+    const auto material_of_scene = [](const Scene &scene) { return scene.materials()[scene.materials().first()]; };
+    scene::Material material{.name = "paint"};
+    material.specular_color = glm::vec3(is_black ? 0.0F : 1.0F);
+    expect_limits<scene::Material>(material, 0, with_material, material_of_scene);
+    expect_limits<scene::TextureSlot>(
+        {}, 0,
+        [&](const scene::TextureSlot &slot) {
+          scene::Material turned = material;
+          turned.base_color_texture = slot;
+          return with_material(turned);
+        },
+        [&](const Scene &scene) { return material_of_scene(scene).base_color_texture; });
+  }
 }
 
 std::string export_error(const Scene &scene, const std::filesystem::path &path)

@@ -556,74 +556,80 @@ void expect_aspects(const T &value, const std::vector<std::pair<typename T::Aspe
   EXPECT_TRUE(others.take().empty()) << T::kind_name;
 }
 
+template <typename T>
+using AspectEdits = std::vector<std::pair<typename T::Aspect, std::function<void(T &)>>>;
+
+/** Sets another value that \a row allows. */
+template <typename Value>
+void change(Value &value, const Description &row)
+{
+  const double low = std::max(row.min, -1.0);
+  const double other = low + 0.75 * (std::min(row.max, low + 4.0) - low);
+  if constexpr (requires { value.has_value(); }) {
+    change(value.emplace(), row);
+  }
+  else if constexpr (std::is_same_v<Value, std::string>) {
+    value += " again";
+  }
+  else if constexpr (std::is_same_v<Value, bool>) {
+    value = !value;
+  }
+  else if constexpr (std::is_enum_v<Value>) {
+    value = Value((std::size_t(value) + 1) % words<Value>.size());
+  }
+  else if constexpr (std::is_same_v<Value, int>) {
+    value = int(other);
+  }
+  else {
+    // The end of a shadow is beyond its start.
+    value = Value(float(row.name == "shadow_clip_end" ? 2.0 * other : other));
+  }
+}
+
+/** Adds an edit of each property of a part of a T to \a edits, with the aspect of its row. */
+template <typename Part, typename T, typename Access>
+void add_edits(AspectEdits<T> &edits, Access part)
+{
+  Part::for_each_property([&](const auto &row) {
+    edits.emplace_back(typename T::Aspect(row.aspect), [=](T &thing) { change(part(thing).*row.member, row); });
+  });
+}
+
+template <typename T>
+AspectEdits<T> property_edits()
+{
+  AspectEdits<T> edits;
+  add_edits<T>(edits, [](T &thing) -> T & { return thing; });
+  return edits;
+}
+
 TEST(SceneRevision, EachEditChangesItsAspectAlone)
 {
-  using enum LampKind;
-  expect_aspects<Lamp>({}, {{Lamp::Aspect::Light, [](Lamp &lamp) { lamp.intensity = 3.0F; }},
-                            {Lamp::Aspect::Light, [](Lamp &lamp) { lamp.color.g = 0.5F; }},
-                            {Lamp::Aspect::Name, [](Lamp &lamp) { lamp.name = "renamed"; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.kind = Spot; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.radius = 0.1F; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.angle = 0.1F; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.spot_outer_angle = 0.3F; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.spot_blend = 0.5F; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.range = 5.0F; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.area_shape = AreaShape::Ellipse; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.area_size_x = 2.0F; }},
-                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.area_size_y = 2.0F; }},
-                            {Lamp::Aspect::Shadow, [](Lamp &lamp) { lamp.shadow.size = 64; }}});
-  expect_aspects<Camera>({}, {{Camera::Aspect::Name, [](Camera &camera) { camera.name = "renamed"; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.near = 0.2F; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.far = 9.0F; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.aspect = 1.5F; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.vertical_angle = 0.5F; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.kind = CameraKind::Orthographic; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.half_width = 3.0F; }},
-                              {Camera::Aspect::Lens, [](Camera &camera) { camera.half_height = 3.0F; }}});
-  expect_aspects<Material>(
-      {}, {{Material::Aspect::Name, [](Material &material) { material.name = "renamed"; }},
-           {Material::Aspect::Surface, [](Material &material) { material.base_color.r = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.metallic = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.roughness = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.specular = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.specular_color.b = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.emissive.b = 0.5F; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.alpha = 0.5F; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.alpha_mode = AlphaMode::Mask; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.alpha_cutoff = 0.25F; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
-           {Material::Aspect::Surface, [](Material &material) { material.normal_scale = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.occlusion_strength = 0.5F; }},
-           {Material::Aspect::Textures, [](Material &material) { material.is_unlit = true; }},
-           {Material::Aspect::Textures,
-            [](Material &material) {
-              material.base_color_texture = Handle<Texture>{7, 1};
-            }},
-           {Material::Aspect::Textures,
-            [](Material &material) {
-              material.specular_color_texture = Handle<Texture>{7, 1};
-            }},
-           {Material::Aspect::Textures, [](Material &material) { material.normal_texture.uv_set = 1; }},
-           {Material::Aspect::Textures, [](Material &material) { material.emissive_texture.offset.y = 1.0F; }},
-           {Material::Aspect::Textures, [](Material &material) { material.occlusion_texture.rotation = 1.0F; }},
-           {Material::Aspect::Textures, [](Material &material) { material.metallic_roughness_texture.scale.x = 2.0F; }},
-           {Material::Aspect::Textures, [](Material &material) { material.sheen_roughness_texture.scale.x = 2.0F; }}});
+  AspectEdits<Lamp> lamp_edits = property_edits<Lamp>();
+  add_edits<LampShadow>(lamp_edits, [](Lamp &lamp) -> LampShadow & { return lamp.shadow; });
+  expect_aspects<Lamp>({}, lamp_edits);
+  expect_aspects<Camera>({}, property_edits<Camera>());
+  AspectEdits<Material> material_edits = property_edits<Material>();
+  for (const TextureInput &input : texture_inputs) {
+    const std::size_t first = material_edits.size();
+    add_edits<TextureSlot>(material_edits, [=](Material &material) -> TextureSlot & { return material.*input.slot; });
+    for (std::size_t i = first; i < material_edits.size(); i++) {
+      material_edits[i].first = Material::Aspect::Textures;
+    }
+    material_edits.emplace_back(Material::Aspect::Textures, [=](Material &material) {
+      (material.*input.slot).texture = {7, 1};
+    });
+  }
+  // The textures that are read depend on whether there is a layer, and what is let through on whether light is.
   Material layered;
-  layered.coat = 1.0F;
+  layered.coat = layered.anisotropy = 1.0F;
   layered.sheen_color = glm::vec3(1.0F);
-  layered.anisotropy = 1.0F;
-  expect_aspects<Material>(
-      layered, {{Material::Aspect::Surface, [](Material &material) { material.coat = 0.5F; }},
-                {Material::Aspect::Surface, [](Material &material) { material.coat_roughness = 0.5F; }},
-                {Material::Aspect::Surface, [](Material &material) { material.sheen_color.r = 0.5F; }},
-                {Material::Aspect::Surface, [](Material &material) { material.sheen_roughness = 0.5F; }},
-                {Material::Aspect::Surface, [](Material &material) { material.anisotropy = 0.5F; }},
-                {Material::Aspect::Surface, [](Material &material) { material.anisotropy_rotation = 0.5F; }}});
-  expect_aspects<Material>(
-      {}, {{Material::Aspect::Surface, [](Material &material) { material.thickness = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.ior = 1.25F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.attenuation_color.g = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.attenuation_distance = 0.5F; }}});
+  std::erase_if(material_edits, [&](const auto &edit) {
+    Material changed = layered;
+    edit.second(changed);
+    return changed.has_transmission();
+  });
+  expect_aspects<Material>(layered, material_edits);
   // A surface function may compute alpha from all factors, so that they change what is cut out.
   const auto edits_of = [](AlphaMode mode) {
     Scene scene;
@@ -674,23 +680,20 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
     scene.edit(mesh, change);
     EXPECT_EQ(changes.take(), (std::vector{Mesh::Aspect::Shape, Mesh::Aspect::Layout}));
   }
-  expect_aspects<Node>({}, {{Node::Aspect::Name, [](Node &node) { node.name = "renamed"; }},
-                            {Node::Aspect::Transform, [](Node &node) { node.parent_from_node[3].x = 1.0; }},
-                            {Node::Aspect::Content,
-                             [](Node &node) {
-                               node.meshes = {{7, 1}};
-                             }},
-                            {Node::Aspect::Content,
-                             [](Node &node) {
-                               node.lamp = {7, 1};
-                             }},
-                            {Node::Aspect::Content,
-                             [](Node &node) {
-                               node.camera = {7, 1};
-                             }},
-                            {Node::Aspect::Visibility, [](Node &node) { node.is_visible = false; }},
-                            {Node::Aspect::Shadow, [](Node &node) { node.casts_shadow = false; }},
-                            {Node::Aspect::Shadow, [](Node &node) { node.receives_shadow = false; }}});
+  AspectEdits<Node> node_edits = property_edits<Node>();
+  node_edits.insert(node_edits.end(), {{Node::Aspect::Transform, [](Node &node) { node.parent_from_node[3].x = 1.0; }},
+                                       {Node::Aspect::Content,
+                                        [](Node &node) {
+                                          node.meshes = {{7, 1}};
+                                        }},
+                                       {Node::Aspect::Content,
+                                        [](Node &node) {
+                                          node.lamp = {7, 1};
+                                        }},
+                                       {Node::Aspect::Content, [](Node &node) {
+                                          node.camera = {7, 1};
+                                        }}});
+  expect_aspects<Node>({}, node_edits);
 }
 
 /** A mesh of 1000 vertices, edited by few at a time. */
@@ -1034,9 +1037,9 @@ TEST(SceneEdit, InvalidValuesAreRefused)
                                     {"not affine", [](Node &node) { node.parent_from_node = glm::dmat4(0.0); }}});
   expect_refused<Lamp>({.name = "l"},
                        {{"intensity is not finite", [](Lamp &lamp) { lamp.intensity = float(nan); }},
-                        {"intensity -30 is not at least 0", [](Lamp &lamp) { lamp.intensity = -30.0F; }},
+                        {"intensity -30 is not from 0 to 1e+30", [](Lamp &lamp) { lamp.intensity = -30.0F; }},
                         {"color is not finite", [](Lamp &lamp) { lamp.color.g = float(infinity); }},
-                        {"color -1 is not at least 0", [](Lamp &lamp) { lamp.color.b = -1.0F; }},
+                        {"color -1 is not from 0 to 1e+12", [](Lamp &lamp) { lamp.color.b = -1.0F; }},
                         {"radius -1", [](Lamp &lamp) { lamp.radius = -1.0F; }},
                         {"spot_outer_angle is not finite", [](Lamp &lamp) { lamp.spot_outer_angle = float(nan); }},
                         {"shadow_bias is not finite", [](Lamp &lamp) { lamp.shadow.bias = float(nan); }}});
@@ -1049,15 +1052,16 @@ TEST(SceneEdit, InvalidValuesAreRefused)
   Material turned;
   turned.normal_scale = turned.anisotropy_rotation = -3.0F;
   Scene().add(turned);
-  expect_refused<Camera>({.name = "c"},
-                         {{"vertical_angle 0 is not from", [](Camera &camera) { camera.vertical_angle = 0.0F; }},
-                          {"vertical_angle 9 is not from", [](Camera &camera) { camera.vertical_angle = 9.0F; }},
-                          {"near 0 is not above 0", [](Camera &camera) { camera.near = 0.0F; }},
-                          {"far is not finite", [](Camera &camera) { camera.far = float(nan); }},
-                          {"half_height 0 is not at least", [](Camera &camera) {
-                             camera.kind = CameraKind::Orthographic;
-                             camera.half_height = 0.0F;
-                           }}});
+  expect_refused<Camera>(
+      {.name = "c"},
+      {{"vertical_angle 0 is not from", [](Camera &camera) { camera.vertical_angle = 0.0F; }},
+       {"vertical_angle 9 is not from", [](Camera &camera) { camera.vertical_angle = 9.0F; }},
+       {"near 0 is not above 0", [](Camera &camera) { camera.near = 0.0F; }},
+       {"far is not finite", [](Camera &camera) { camera.far = float(nan); }},
+       {"half_height 0 is not from 1e-12 to 1e+12, or the negative of such a number", [](Camera &camera) {
+          camera.kind = CameraKind::Orthographic;
+          camera.half_height = 0.0F;
+        }}});
 }
 
 TEST(SceneEdit, ARefusedTransformChangesNothing)

@@ -129,10 +129,10 @@ TYPED_TEST(ScenePropertyEdits, OutsideOfTheLimitsAreRefusedAndNamedAndInsideRais
       // Larger than the spacing of floats there.
       const double step = is_whole ? 1.0 : 0.01 * std::max(1.0, std::abs(row.min));
       const double below = row.min - step;
-      if (row.min > -1e30 && set_number(member, below)) {
+      if (set_number(member, below)) {
         EXPECT_TRUE(refuses(thing)) << row.name << " below";
       }
-      if (row.max < 1e30 && set_number(member, 1.01 * row.max + step)) {
+      if (set_number(member, 1.01 * row.max + step)) {
         EXPECT_TRUE(refuses(thing)) << row.name << " above";
       }
       if (!is_whole && set_number(member, std::nan(""))) {
@@ -140,8 +140,7 @@ TYPED_TEST(ScenePropertyEdits, OutsideOfTheLimitsAreRefusedAndNamedAndInsideRais
       }
       member = before;
       const TypeParam original = thing;
-      const double inside = row.max < 1e30 ? row.max : std::max(row.min, 0.0) + 7.0;
-      if (set_number(member, inside) && member != before) {
+      if (set_number(member, row.max) && member != before) {
         Scene scene;
         const auto handle = scene.add(original);
         scene.replace(handle, thing);

@@ -24,26 +24,28 @@ TEXTS = {
     "world": ["0.5,1,2", "2,1,0.5", "studio", "sky.exr"],
     "background": ["world", "0.25,0.5,1", "1,1,1", "none"],
     "animation": ["turn", "move"],
-    "aperture": ["0", "0.125", "0.5"],
-    "focus": ["0", "3", "8.5"],
 }
 # What parts of a picture cannot have, and what makes or names the parts.
 LEFT_OUT = {"output", "size", "noise-threshold", "debug", "aov", "world-layer", "frames", "step", "resume", "sample-range", "tile", "max-error",
             "max-time", "report", "time-limit", "part", "stop-after", "checkpoint", "backend", "repeat", "redraw-shadows"}
-HARMLESS = {"cube-pass": ["best", "six", "layered"], "explain": [None], "strict": [None], "progress": [None], "json": ["a.json", "b.json"],
-            "trace": ["a.trace", "b.trace"], "only-below": ["."]}
+# Beside the settings whose help says so.
+HARMLESS = {"explain": [None], "strict": [None], "progress": [None], "json": ["a.json", "b.json"], "trace": ["a.trace", "b.trace"],
+            "only-below": ["."]}
 
 
 def settings_of(program):
-    """A function for each option, that draws a value."""
+    """A function that draws a value, for each option; and the values of the options that the picture does not depend on."""
     status, text, _ = program.run("render", "--help")
     expect(status == 0, "no help")
-    draws = {}
+    draws, harmless = {}, dict(HARMLESS)
     options = text.decode().split("\nOptions that do not go together")[0]
-    for name, kind in re.findall(r"^  (?:-\w,)?--([\w-]+)(?: (.*?))?(?:  .*)?$", options, re.M):
+    for name, kind, lines in re.findall(r"^  (?:-\w,)?--([\w-]+)(?: (.*?))?((?:  .*)?$(?:\n {8}.*$)*)", options, re.M):
         if name in LEFT_OUT or name in HARMLESS or name == "help":
             continue
         words = re.search(r"{(.*?)}", kind)
+        if "The picture does not depend on it." in " ".join(lines.split()):
+            harmless[name] = words[1].split(",")
+            continue
         limits = re.search(r"in \[(\S+) - (\S+)\]", kind)
         if name in TEXTS:
             draws[name] = lambda random, values=TEXTS[name]: random.choice(values)
@@ -60,7 +62,7 @@ def settings_of(program):
                 low, high = max(low, -8), min(high, 8)
                 draws[name] = lambda random, low=low, high=high: f"{random.uniform(low, high):.3f}"
     draws["samples"] = lambda random: str(random.choice([4, 6]))
-    return draws
+    return draws, harmless
 
 
 def respelt(random, value):
@@ -116,7 +118,7 @@ def check(program, random, of):
     small = ["--size", "8x6"]
     for sky, radiance in (("sky.exr", (1, 2, 3)), ("other.exr", (3, 2, 1))):
         write_picture(f"{folder}/{sky}", numpy.full((4, 8, 3), radiance))
-    draws = settings_of(program)
+    draws, harmless = settings_of(program)
     if not of["frame"]:
         for name in ("fps", "animation", "shutter"):
             del draws[name]
@@ -140,11 +142,11 @@ def check(program, random, of):
         second[name] = random.choice(sorted(values - {first[name]}))
         what = f"--{name} {first[name]} and {second[name]}"
     elif change == "harmless":
-        name = random.choice(sorted(HARMLESS))
+        name = random.choice(sorted(harmless))
         what = f"--{name}"
         for settings in (first, second):
             if random.random() < 0.7:
-                settings[name] = random.choice(HARMLESS[name])
+                settings[name] = random.choice(harmless[name])
     samples = [int(settings["samples"]) for settings in (first, second)]
     parts = [["--tile", "1/2"], ["--tile", "2/2"]]
     if of["parts"] == "ranges":

@@ -19,7 +19,7 @@ std::optional<PcfKernel> pcf_kernel_of(std::string_view text)
   int taps = 0;
   const char *end = text.data() + text.size();
   const auto [after, error] = std::from_chars(text.data() + disk.size(), end, taps);
-  if (error != std::errc() || after != end || taps < 1 || taps > 64) {
+  if (error != std::errc() || after != end || taps < 1 || taps > PcfKernel::taps_max) {
     return std::nullopt;
   }
   return PcfKernel{.width = 0, .taps = taps};

@@ -88,15 +88,17 @@ constexpr Feature without_shadows(Feature features)
 
 /** The kernel of percentage-closer filtering. */
 struct PcfKernel {
+  static constexpr int taps_max = 64;
+
   /** Edge of the square kernel, texels: 1, 3 or 5. 0 selects a disk with a radius of 2 texels. */
   int width = 3;
-  /** Number of bilinear lookups on the disk, 1 to 64. Not used by the square kernels. */
+  /** Number of bilinear lookups on the disk, 1 to taps_max. Not used by the square kernels. */
   int taps = 16;
 
   bool operator==(const PcfKernel &) const = default;
 };
 
-/** The kernel that \a text names: 1, 3x3, 5x5, or disk:N with N lookups, 1 to 64. Empty for any other text. */
+/** The kernel that \a text names: 1, 3x3, 5x5, or disk:N with N lookups. Empty for any other text. */
 [[nodiscard]] std::optional<PcfKernel> pcf_kernel_of(std::string_view text);
 /** The text of \a kernel for pcf_kernel_of. */
 [[nodiscard]] std::string text_of(const PcfKernel &kernel);

@@ -179,7 +179,7 @@ constexpr void Settings::for_each_property(Visit &&visit)
   visit(property(&Settings::light_threshold, {.name = "light_threshold",
                                               .option = "light-threshold",
                                               .unit = "W/m²",
-                                              .max = 1e30,
+                                              .max = scene::light_max,
                                               .sentence = "Irradiance that may be left out of the light of each point "
                                                           "and spot lamp."}));
   visit(property(&Settings::emissive_point_count,
@@ -207,6 +207,7 @@ constexpr void Settings::for_each_property(Visit &&visit)
   visit(property(&Settings::clustered_lamps_min,
                  {.name = "clustered_lamps_min",
                   .min = 1,
+                  .max = std::numeric_limits<int>::max(),
                   .makes_picture = false,
                   .sentence = "From this number of lamps with a range, pixels visit only the lamps that can reach "
                               "them."}));

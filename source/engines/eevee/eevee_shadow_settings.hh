@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -163,6 +162,12 @@ namespace gnomon::eevee {
 /** The header of the window for settings of shadows. */
 inline constexpr std::string_view shadow_settings_group = "Shadow settings";
 
+/** The description of the same setting of a lamp, for its limits. */
+[[nodiscard]] constexpr scene::Description of_lamp(std::string_view name)
+{
+  return scene::description_of<scene::LampShadow>(name);
+}
+
 template <typename Visit>
 constexpr void EsmSettings::for_each_property(Visit &&visit)
 {
@@ -180,8 +185,8 @@ constexpr void EsmSettings::for_each_property(Visit &&visit)
                   .label = "ESM layer size",
                   .group = shadow_settings_group,
                   .unit = "px",
-                  .min = 4,
-                  .max = 8192,
+                  .min = of_lamp("shadow_esm_size_px").min,
+                  .max = of_lamp("shadow_esm_size_px").max,
                   .sentence = "Texels along an edge of an octahedral layer, for ESM and EVSM of lamps except suns."}));
   visit(property(
       &EsmSettings::exponent,
@@ -190,9 +195,9 @@ constexpr void EsmSettings::for_each_property(Visit &&visit)
        .label = "ESM exponent",
        .group = shadow_settings_group,
        .unit = "1/m",
-       .min = 0.01,
-       .max = 1e4,
-       .first = 10,
+       .min = of_lamp("shadow_exponent").min,
+       .max = of_lamp("shadow_exponent").max,
+       .first = of_lamp("shadow_exponent").first,
        .sentence = "Exponential shadows: exponent. Absent: it is derived from the size, the filter and the range of "
                    "each shadow."}));
   visit(property(
@@ -202,12 +207,12 @@ constexpr void EsmSettings::for_each_property(Visit &&visit)
        .label = "ESM filter radius",
        .group = shadow_settings_group,
        .unit = "rad",
-       .max = std::numbers::pi / 4,
-       .first = std::numbers::pi / 180,
+       .max = of_lamp("shadow_filter_angle").max,
+       .first = of_lamp("shadow_filter_angle").first,
        .sentence = "Exponential shadows: half the opening angle of the filter. Absent: half the mean angle of a "
                    "texel."}));
   visit(property(&EsmSettings::bias, {.name = "shadow_bias",
-                                      .max = 100,
+                                      .max = of_lamp("shadow_bias").max,
                                       .sentence = "Exponential shadows: factor of the bias that is derived from the "
                                                   "texel size."}));
   visit(property(&EsmSettings::format,
@@ -218,6 +223,7 @@ constexpr void EsmSettings::for_each_property(Visit &&visit)
 template <typename Visit>
 constexpr void ShadowSettings::for_each_property(Visit &&visit)
 {
+  static_assert(PcfKernel::taps_max == 64, "the sentence of pcf says 64");
   using scene::part_property;
   using scene::property;
   visit(property(&ShadowSettings::kind, {.name = "shadow_kind",
@@ -230,8 +236,8 @@ constexpr void ShadowSettings::for_each_property(Visit &&visit)
                  {.name = "cube_size_px",
                   .option = "shadow-size",
                   .unit = "px",
-                  .min = 1,
-                  .max = 16384,
+                  .min = of_lamp("shadow_size_px").min,
+                  .max = of_lamp("shadow_size_px").max,
                   .sentence = "Texels along an edge of a cube's face, for points, area lamps and wide spots."}));
   visit(property(&ShadowSettings::map_size_px,
                  {.name = "map_size_px",
@@ -239,8 +245,8 @@ constexpr void ShadowSettings::for_each_property(Visit &&visit)
                   .option = "shadow-size",
                   .label = "Shadow size",
                   .unit = "px",
-                  .min = 1,
-                  .max = 16384,
+                  .min = of_lamp("shadow_size_px").min,
+                  .max = of_lamp("shadow_size_px").max,
                   .sentence = "Texels along an edge of a map, for spots and suns. Pictures for which there is time may "
                               "have other sizes for suns."}));
   visit(property(&ShadowSettings::pcf, {.name = "pcf",

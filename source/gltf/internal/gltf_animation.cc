@@ -4,7 +4,6 @@
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_pointer.hh"
-#include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 
 #include <fmt/format.h>
@@ -165,9 +164,9 @@ class AnimationImporter {
     }
     const std::string_view property = parts.path.substr(split + transform_path.size());
     const std::string_view slot_path = parts.path.substr(0, split);
-    const auto *const name =
-        std::ranges::find_if(slot_names, [&](const SlotName &one) { return slot_path == path_of(one); });
-    if (name == slot_names.end() || (property != "offset" && property != "rotation" && property != "scale")) {
+    const auto *const input = std::ranges::find(scene::texture_inputs, slot_path, &scene::TextureInput::path);
+    if (input == scene::texture_inputs.end() ||
+        (property != "offset" && property != "rotation" && property != "scale")) {
       return false;
     }
     const auto found = things_.materials.find(parts.index);
@@ -177,7 +176,7 @@ class AnimationImporter {
     AnimatedValue value;
     value.target = found->second;
     value.property = property == "offset" ? "offset" : property == "scale" ? "scale" : "rotation";
-    value.slot = scene::texture_inputs[std::size_t(name - slot_names.begin())].name;
+    value.slot = input->name;
     value.track = property == "rotation" ? track(sampler, 1, Model::ElementType::Scalar)
                                          : track(sampler, 2, Model::ElementType::Vec2);
     animation.values.push_back(value);
@@ -326,11 +325,13 @@ class AnimationImporter {
     if (parts.collection == "materials") {
       if (const auto found = things_.materials.find(parts.index); found != things_.materials.end()) {
         const Model::Material &source = file_.model.materials[std::size_t(parts.index)];
-        const glm::dvec3 emissive(source.emissive[0], source.emissive[1], source.emissive[2]);
-        add(found->second, is_strength                   ? emissive
+        const std::array<double, 4> emissive =
+            source.factor("emissive") ? *source.factor("emissive") : std::array<double, 4>{};
+        const std::array<double, 4> *const ior = source.factor("ior");
+        add(found->second, is_strength                   ? glm::dvec3(emissive[0], emissive[1], emissive[2])
                            : property.name == "emissive" ? glm::dvec3(source.emissive_strength)
-                           : property.name == "specular_color" && source.ior
-                               ? glm::dvec3(reflectance_ratio(float(valid_ior(*source.ior))))
+                           : property.name == "specular_color" && ior != nullptr
+                               ? glm::dvec3(reflectance_ratio(float(valid_ior((*ior)[0]))))
                                : glm::dvec3(1.0));
       }
     }

@@ -39,7 +39,8 @@ std::string camera_fault(const Camera &camera)
     }
     scene::for_each_number(camera.*row.member, [&](double value) {
       // No view begins behind the camera, and a perspective one not at it.
-      const Range range = row.name != "near" ? range_of(row) : is_perspective ? length_range : not_negative;
+      const Range range =
+          row.name != "near" ? range_of(row) : Range{is_perspective ? scene::smallest_length : 0.0, row.max};
       if (fault.empty() && !range.contains(value)) {
         const std::string_view member = row.path.substr(row.path.rfind('/') + 1);
         fault = std::string(member) + ' ' + text(value) + " must be " + range.text();
@@ -123,7 +124,8 @@ PlacedCamera default_camera(const Bounds &bounds)
   const glm::dvec3 center = bounds.is_empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.center());
   // At least the spacing of floats at the scene's position, and at least the smallest length.
   const double reach = glm::length(center);
-  const double radius = bounds.is_empty() ? 1.0 : std::max({double(bounds.radius()), 1e-6 * reach, 1e3 * length_min});
+  const double radius =
+      bounds.is_empty() ? 1.0 : std::max({double(bounds.radius()), 1e-6 * reach, 1e3 * scene::smallest_length});
   const glm::dvec3 half =
       bounds.is_empty() ? glm::dvec3(radius) : glm::max(0.5 * glm::dvec3(bounds.max - bounds.min), 1e-3 * radius);
   const glm::dvec3 forward = glm::normalize(glm::dvec3(-0.6, -0.45, -1.0));

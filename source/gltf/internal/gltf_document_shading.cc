@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_document_shading.hh"
 
+#include "internal/gltf_pointer.hh"
+#include "scene_animation.hh"
+#include "scene_properties.hh"
+
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
+#include <type_traits>
 
 namespace gnomon::gltf {
 
 namespace {
 
-/** \a factor: a member of the slot named \a factor_key; nullptr, and an empty name, if it has none. */
-void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot, std::string_view factor_key = "",
-               double *factor = nullptr)
+/** \a more: members that the slot may have beside those of each slot. */
+template <typename... Read>
+void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot, const Member<Read> &...more)
 {
   // The texture transform's set replaces the slot's.
   int transformed_set = -1;
@@ -19,70 +26,13 @@ void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &s
     read_members(at, transform, into("offset", slot.offset), into("rotation", slot.rotation), into("scale", slot.scale),
                  into("texCoord", transformed_set));
   };
-  double unused = 0.0;
   read_members(place, value, into("index", slot.index), into("texCoord", slot.set),
-               into(factor_key, factor != nullptr ? *factor : unused),
-               Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+               Member{"extensions",
+                      [&](const Place &at, const JsonValue &extensions) {
                         read_members(at, extensions, Member{"KHR_texture_transform", read_transform});
-                      }});
-  slot.set = transformed_set < 0 ? slot.set : transformed_set;
-}
-
-auto into_slot(std::string_view key, Model::TextureSlot &slot, std::string_view factor_key = "",
-               double *factor = nullptr)
-{
-  return Member{key, [=, &slot](const Place &place, const JsonValue &value) {
-                  read_slot(place, value, slot, factor_key, factor);
-                }};
-}
-
-void read_specular(const Place &place, const JsonValue &value, Model::Material &material)
-{
-  read_members(place, value, into("specularFactor", material.specular),
-               into("specularColorFactor", material.specular_color),
-               into_slot("specularTexture", material.specular_texture),
-               into_slot("specularColorTexture", material.specular_color_texture));
-}
-
-void read_coat(const Place &place, const JsonValue &value, Model::Material &material)
-{
-  read_members(place, value, into("clearcoatFactor", material.coat),
-               into("clearcoatRoughnessFactor", material.coat_roughness),
-               into_slot("clearcoatTexture", material.coat_texture),
-               into_slot("clearcoatRoughnessTexture", material.coat_roughness_texture),
-               into_slot("clearcoatNormalTexture", material.coat_normal_texture, "scale", &material.coat_normal_scale));
-}
-
-void read_sheen(const Place &place, const JsonValue &value, Model::Material &material)
-{
-  read_members(place, value, into("sheenColorFactor", material.sheen_color),
-               into("sheenRoughnessFactor", material.sheen_roughness),
-               into_slot("sheenColorTexture", material.sheen_color_texture),
-               into_slot("sheenRoughnessTexture", material.sheen_roughness_texture));
-}
-
-void read_anisotropy(const Place &place, const JsonValue &value, Model::Material &material)
-{
-  read_members(place, value, into("anisotropyStrength", material.anisotropy),
-               into("anisotropyRotation", material.anisotropy_rotation),
-               into_slot("anisotropyTexture", material.anisotropy_texture));
-}
-
-void read_transmission(const Place &place, const JsonValue &value, Model::Material &material)
-{
-  read_members(place, value, into("transmissionFactor", material.transmission),
-               into_slot("transmissionTexture", material.transmission_texture));
-}
-
-void read_volume(const Place &place, const JsonValue &value, Model::Material &material)
-{
-  read_members(place, value, into("thicknessFactor", material.thickness),
-               into_slot("thicknessTexture", material.thickness_texture),
-               Member{"attenuationDistance",
-                      [&](const Place &at, const JsonValue &distance) {
-                        material.attenuation_distance = number_at(at, distance);
                       }},
-               into("attenuationColor", material.attenuation_color));
+               more...);
+  slot.set = transformed_set < 0 ? slot.set : transformed_set;
 }
 
 /** KHR_materials_pbrSpecularGlossiness. */
@@ -102,64 +52,165 @@ void convert(const SpecularGlossiness &source, Model::Material &material)
 {
   // Reflectance of a dielectric without a specular colour.
   constexpr double dielectric = 0.04;
-  material.base_color = source.diffuse;
-  material.base_color_texture = source.diffuse_texture;
-  material.metallic = 0.0;
-  material.roughness = 1.0 - source.glossiness;
-  material.specular = 1.0;
-  material.specular_texture = {};
+  material.factors["base_color"] = source.diffuse;
+  material.factors["metallic"] = {0.0};
+  material.factors["roughness"] = {1.0 - source.glossiness};
+  material.factors["specular"] = {1.0};
   for (std::size_t i = 0; i < 3; i++) {
-    material.specular_color[i] = source.specular[i] / dielectric;
+    material.factors["specular_color"][i] = source.specular[i] / dielectric;
   }
-  material.specular_color_texture = source.specular_glossiness_texture;
-  material.metallic_roughness_texture = source.specular_glossiness_texture;
+  material.factors.erase("ior");
+  material.textures["base_color_texture"] = source.diffuse_texture;
+  material.textures.erase("specular_texture");
+  material.textures["specular_color_texture"] = source.specular_glossiness_texture;
+  material.textures["metallic_roughness_texture"] = source.specular_glossiness_texture;
   material.glossiness = source.glossiness;
-  material.ior.reset();
 }
 
-void read_material_extensions(const Place &place, const JsonValue &value, Model::Material &material,
-                              std::optional<SpecularGlossiness> &specular_glossiness)
-{
-  for_members(place, value, [&](std::string_view name, const Place &at, const JsonValue &extension) {
-    if (name == "KHR_materials_specular") {
-      read_specular(at, extension, material);
+/** Parses a material. Factors and textures are found by the paths of their rows. */
+class MaterialParser {
+ public:
+  explicit MaterialParser(Model::Material &material) : material_(material) {}
+
+  void read(const Place &place, const JsonValue &value)
+  {
+    read_object(place, value, "");
+    if (specular_glossiness_) {
+      convert(*specular_glossiness_, material_);
     }
-    else if (name == "KHR_materials_pbrSpecularGlossiness") {
-      SpecularGlossiness &read = specular_glossiness.emplace();
-      read_members(at, extension, into("diffuseFactor", read.diffuse), into("specularFactor", read.specular),
-                   into("glossinessFactor", read.glossiness), into_slot("diffuseTexture", read.diffuse_texture),
-                   into_slot("specularGlossinessTexture", read.specular_glossiness_texture));
+  }
+
+ private:
+  Model::Material &material_;
+  std::optional<SpecularGlossiness> specular_glossiness_;
+
+  /** \a path: of the object, from the material; empty: the material. */
+  void read_object(const Place &place, const JsonValue &value, const std::string &path)
+  {
+    std::set<std::string_view> read;
+    for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &member) {
+      if (!read_member(at, member, path.empty() ? std::string(key) : path + '/' + std::string(key))) {
+        if (key == extensions_key || place.key == extensions_key) {
+          skip_member(place, at, member);
+        }
+      }
+      else if (!read.insert(key).second) {
+        at.warn(twice_text);
+      }
+    });
+  }
+
+  /** \return false if the importer does not read members at \a path. */
+  bool read_member(const Place &at, const JsonValue &value, const std::string &path)
+  {
+    if (read_factor(at, value, path) || read_texture(at, value, path)) {
+      return true;
     }
-    else if (name == "KHR_materials_clearcoat") {
-      read_coat(at, extension, material);
+    if (path == "name") {
+      material_.name = name_at(at, value);
     }
-    else if (name == "KHR_materials_sheen") {
-      read_sheen(at, extension, material);
+    else if (path == "alphaMode") {
+      material_.alpha_mode = string_at(at, value);
     }
-    else if (name == "KHR_materials_anisotropy") {
-      read_anisotropy(at, extension, material);
+    else if (path == strength_path) {
+      material_.emissive_strength = number_at(at, value);
     }
-    else if (name == "KHR_materials_transmission") {
-      read_transmission(at, extension, material);
+    else if (path == "extensions/KHR_materials_pbrSpecularGlossiness") {
+      read_specular_glossiness(at, value);
     }
-    else if (name == "KHR_materials_volume") {
-      read_volume(at, extension, material);
+    else if (path == "extras") {
+      read_extras(at, value);
     }
-    else if (name == "KHR_materials_emissive_strength") {
-      read_members(at, extension, into("emissiveStrength", material.emissive_strength));
-    }
-    else if (name == "KHR_materials_ior") {
-      read_members(at, extension, into("ior", material.ior.emplace(1.5)));
-    }
-    else if (name == "KHR_materials_unlit") {
-      static_cast<void>(object_at(at, extension));
-      material.is_unlit = true;
+    else if (has_parts(path)) {
+      read_object(at, value, path);
     }
     else {
-      warn_unread_extension(place, name);
+      return false;
     }
-  });
-}
+    return true;
+  }
+
+  bool read_factor(const Place &at, const JsonValue &value, std::string_view path)
+  {
+    bool is_read = false;
+    scene::Material::for_each_property([&](const auto &row) {
+      using Value = typename std::decay_t<decltype(row)>::Value;
+      if (row.path != path) {
+        return;
+      }
+      if constexpr (std::is_same_v<Value, float>) {
+        material_.factors[row.name] = {number_at(at, value)};
+        is_read = true;
+      }
+      else if constexpr (std::is_same_v<Value, glm::vec3>) {
+        read_numbers(at, value, std::span(material_.factors[row.name]).first(scene::width_of(row.name)));
+        is_read = true;
+      }
+      else if constexpr (std::is_same_v<Value, bool>) {
+        // An extension without members says true.
+        const bool is_extension = at.outer->key == extensions_key;
+        material_.factors[row.name] = {is_extension ? (static_cast<void>(object_at(at, value)), 1.0)
+                                                    : double(boolean_at(at, value))};
+        is_read = true;
+      }
+    });
+    return is_read;
+  }
+
+  bool read_texture(const Place &at, const JsonValue &value, std::string_view path)
+  {
+    const auto *const input = std::ranges::find(scene::texture_inputs, path, &scene::TextureInput::path);
+    if (input == scene::texture_inputs.end()) {
+      return false;
+    }
+    // A factor that stands in the slot, such as the scale of a normal texture.
+    std::string_view factor_path;
+    scene::Material::for_each_property(
+        [&](const scene::Description &row) { factor_path = is_below(row.path, path) ? row.path : factor_path; });
+    const std::string_view factor_key = factor_path.empty() ? "" : factor_path.substr(path.size() + 1);
+    read_slot(at, value, material_.textures[input->name],
+              Member{factor_key, [&](const Place &in, const JsonValue &factor) {
+                       static_cast<void>(read_factor(in, factor, factor_path));
+                     }});
+    return true;
+  }
+
+  void read_specular_glossiness(const Place &at, const JsonValue &value)
+  {
+    SpecularGlossiness &read = specular_glossiness_.emplace();
+    const auto into_slot = [](std::string_view key, Model::TextureSlot &slot) {
+      return Member{key, [&slot](const Place &in, const JsonValue &member) { read_slot(in, member, slot); }};
+    };
+    read_members(at, value, into("diffuseFactor", read.diffuse), into("specularFactor", read.specular),
+                 into("glossinessFactor", read.glossiness), into_slot("diffuseTexture", read.diffuse_texture),
+                 into_slot("specularGlossinessTexture", read.specular_glossiness_texture));
+  }
+
+  void read_extras(const Place &at, const JsonValue &extras)
+  {
+    if (extras.is_object()) {
+      read_members(at, extras, into("gnomon_surface", material_.surface_uri),
+                   Member{"gnomon_thickness", [&](const Place &in, const JsonValue &thickness) {
+                            material_.own_thickness = number_at(in, thickness);
+                          }});
+    }
+  }
+
+  static bool is_below(std::string_view path, std::string_view object)
+  {
+    return path.size() > object.size() && path.starts_with(object) && path[object.size()] == '/';
+  }
+
+  /** Whether the object at \a path may have factors or textures. */
+  static bool has_parts(std::string_view path)
+  {
+    bool has_any = is_below(strength_path, path) ||
+                   std::ranges::any_of(scene::texture_inputs,
+                                       [&](const scene::TextureInput &input) { return is_below(input.path, path); });
+    scene::Material::for_each_property([&](const scene::Description &row) { has_any |= is_below(row.path, path); });
+    return has_any;
+  }
+};
 
 /** Reads the numbers of a camera. All of \a required must be present. */
 void read_lens(const Place &place, const JsonValue &value, const std::map<std::string_view, double *> &required,
@@ -192,34 +243,7 @@ void read_lens(const Place &place, const JsonValue &value, const std::map<std::s
 
 void read_material(const Place &place, const JsonValue &value, Model::Material &material)
 {
-  std::optional<SpecularGlossiness> specular_glossiness;
-  const auto read_roughness = [&](const Place &at, const JsonValue &roughness) {
-    read_members(at, roughness, into("baseColorFactor", material.base_color), into("metallicFactor", material.metallic),
-                 into("roughnessFactor", material.roughness),
-                 into_slot("baseColorTexture", material.base_color_texture),
-                 into_slot("metallicRoughnessTexture", material.metallic_roughness_texture));
-  };
-  read_members(place, value, into_name(material.name), Member{"pbrMetallicRoughness", read_roughness},
-               into("emissiveFactor", material.emissive), into("alphaMode", material.alpha_mode),
-               into("alphaCutoff", material.alpha_cutoff), into("doubleSided", material.is_double_sided),
-               into_slot("normalTexture", material.normal_texture, "scale", &material.normal_scale),
-               into_slot("occlusionTexture", material.occlusion_texture, "strength", &material.occlusion_strength),
-               into_slot("emissiveTexture", material.emissive_texture),
-               Member{"extensions",
-                      [&](const Place &at, const JsonValue &extensions) {
-                        read_material_extensions(at, extensions, material, specular_glossiness);
-                      }},
-               Member{"extras", [&](const Place &at, const JsonValue &extras) {
-                        if (extras.is_object()) {
-                          read_members(at, extras, into("gnomon_surface", material.surface_uri),
-                                       Member{"gnomon_thickness", [&](const Place &in, const JsonValue &thickness) {
-                                                material.own_thickness = number_at(in, thickness);
-                                              }});
-                        }
-                      }});
-  if (specular_glossiness) {
-    convert(*specular_glossiness, material);
-  }
+  MaterialParser(material).read(place, value);
 }
 
 void read_texture(const Place &place, const JsonValue &value, Model::Texture &texture)

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "internal/gltf_model.hh"
-#include "internal/gltf_units.hh"
 #include "scene_properties.hh"
 
 #include <glm/vec3.hpp>
@@ -32,9 +31,6 @@ struct Range {
   [[nodiscard]] std::string text() const;
 };
 
-constexpr Range not_negative{0.0, large};
-constexpr Range length_range{length_min, large};
-
 /** Key of a property in the extras of files. */
 [[nodiscard]] inline std::string extra_key(const scene::Description &row)
 {
@@ -50,7 +46,15 @@ constexpr Range length_range{length_min, large};
 /** The limits of a property in a file. \a factor: unit of the file over that of the scene */
 [[nodiscard]] inline Range range_of(const scene::Description &row, double factor = 1.0)
 {
-  return {std::max(row.min, -large) * factor, std::min(row.max, large) * factor, row.least * factor, row.zero};
+  // A limit is a float: the exporter writes a value that is at it as its product with the factor.
+  return {double(float(row.min)) * factor, double(float(row.max)) * factor, row.least * factor, row.zero};
+}
+
+/** Of the property of a T that is named \a name. */
+template <typename T>
+[[nodiscard]] Range range_of(std::string_view name, double factor = 1.0)
+{
+  return range_of(scene::description_of<T>(name), factor);
 }
 
 /** The text of an extra for messages. */

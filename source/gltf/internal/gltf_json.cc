@@ -159,6 +159,22 @@ double number_at(const Place &place, const JsonValue &value)
   return number;
 }
 
+void read_numbers(const Place &place, const JsonValue &value, std::span<double> numbers)
+{
+  std::size_t count = 0;
+  JsonArray array;
+  bool is_right = value.get(array) == simdjson::SUCCESS;
+  if (is_right) {
+    for (const JsonValue element : array) {
+      is_right = is_right && count < numbers.size() && element.get(numbers[count]) == simdjson::SUCCESS;
+      count++;
+    }
+  }
+  if (!is_right || count != numbers.size()) {
+    fail(place, value, "an array of " + std::to_string(numbers.size()) + " numbers");
+  }
+}
+
 /** The whole number of \a value, at least 0; empty if it is none. */
 static std::optional<std::uint64_t> whole_number(const Place &place, const JsonValue &value)
 {

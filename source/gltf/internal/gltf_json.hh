@@ -5,10 +5,10 @@
 
 #include <simdjson.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -71,24 +71,8 @@ struct Place {
 /** A whole number in [0, INT_MAX]. */
 [[nodiscard]] int index_at(const Place &place, const JsonValue &value);
 
-template <std::size_t Count>
-void read_numbers(const Place &place, const JsonValue &value, std::array<double, Count> &numbers)
-{
-  std::array<double, Count> read;
-  std::size_t count = 0;
-  JsonArray array;
-  bool is_right = value.get(array) == simdjson::SUCCESS;
-  if (is_right) {
-    for (const JsonValue element : array) {
-      is_right = is_right && count < Count && element.get(read[count]) == simdjson::SUCCESS;
-      count++;
-    }
-  }
-  if (!is_right || count != Count) {
-    fail(place, value, "an array of " + std::to_string(Count) + " numbers");
-  }
-  numbers = read;
-}
+/** An array of as many numbers as \a numbers has. */
+void read_numbers(const Place &place, const JsonValue &value, std::span<double> numbers);
 
 /** A member that read_members looks for. */
 template <typename Read>
@@ -135,6 +119,9 @@ inline auto into_name(std::string &name)
 /** Warns that the importer does not read the extension \a name of the object at \a extensions.outer. */
 void warn_unread_extension(const Place &extensions, std::string_view name);
 
+/** A warning about a member. */
+inline constexpr std::string_view twice_text = "stands twice in the object; the last counts";
+
 /** The key of extensions in all objects of glTF. */
 inline constexpr std::string_view extensions_key = "extensions";
 
@@ -161,7 +148,7 @@ void read_members(const Place &place, const JsonValue &value, const Member<Read>
       }
     }
     else if ((read & bit) != 0) {
-      at.warn("stands twice in the object; the last counts");
+      at.warn(twice_text);
     }
     read |= bit;
   }

@@ -4,6 +4,7 @@
 #include "internal/gltf_camera.hh"
 #include "internal/gltf_extra.hh"
 #include "internal/gltf_node.hh"
+#include "internal/gltf_units.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +25,6 @@ namespace {
 using std::numbers::pi;
 /** Angles may have been rounded to float. */
 constexpr double angle_tolerance = 1e-6;
-/** Smallest half angle of a cone, rad. For smaller angles 1 - cos would underflow in float. */
-constexpr double cone_min = 1e-9;
 
 /** Whether the extra has a meaning on \a node without a lamp. */
 bool is_extra_without_lamp(const Model::Node &node, std::string_view key)
@@ -46,12 +45,12 @@ class LampReader : private ExtraReader {
   {
     lamp_.kind = punctual_kind(light.type);
     for (std::size_t i = 0; i < 3; i++) {
-      lamp_.color[int(i)] = checked("color", light.color[i], not_negative);
+      lamp_.color[int(i)] = checked("color", light.color[i], range_of<Lamp>("color"));
     }
-    static_cast<void>(checked("intensity", light.intensity, not_negative));
+    static_cast<void>(checked("intensity", light.intensity, range_of<Lamp>("intensity", lumen_per_watt)));
     lamp_.intensity = static_cast<float>(light.intensity / lumen_per_watt);
     if (lamp_.kind == LampKind::Point || lamp_.kind == LampKind::Spot) {
-      lamp_.range = light.range == 0.0 ? 0.0F : checked("range", light.range, length_range);
+      lamp_.range = checked("range", light.range, range_of<Lamp>("range"));
     }
     if (lamp_.kind == LampKind::Spot) {
       read_cone(light);
@@ -117,7 +116,9 @@ class LampReader : private ExtraReader {
 
   void read_cone(const Model::Light &light)
   {
-    const double outer = checked("outerConeAngle", light.outer_cone_angle, {cone_min, pi / 2 + angle_tolerance});
+    Range range = range_of<Lamp>("spot_outer_angle");
+    range.max += angle_tolerance;
+    const double outer = checked("outerConeAngle", light.outer_cone_angle, range);
     // glTF requires a smaller inner angle. Equal angles are accepted: Blender writes them for a hard edge.
     const double inner = checked("innerConeAngle", light.inner_cone_angle, {0.0, outer + angle_tolerance});
     lamp_.spot_outer_angle = static_cast<float>(std::min(outer, pi / 2));

@@ -107,8 +107,10 @@ void convert_lamps(LampUnits units, const ImportedThings &things, Warnings &warn
       return;
     }
   }
+  const scene::Description intensity = scene::description_of<Lamp>("intensity");
   for (const Handle<Lamp> handle : punctual) {
-    scene.edit(handle, [](Lamp &lamp) { lamp.intensity = float(double(lamp.intensity) * lumen_per_watt); });
+    scene.edit(handle,
+               [&](Lamp &lamp) { lamp.intensity = intensity.nearest(double(lamp.intensity) * lumen_per_watt); });
   }
   for (scene::Animation &animation : scene.animations) {
     for (scene::AnimatedValue &value : animation.values) {

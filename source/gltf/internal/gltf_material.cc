@@ -28,15 +28,6 @@ namespace {
 /** Number of uv sets of a mesh. \see scene::TextureSlot::uv_set */
 constexpr std::size_t uv_sets_max = 2;
 
-/** The textures whose uv sets are kept before those of others. */
-constexpr std::array by_importance{
-    &Material::base_color_texture,     &Material::emissive_texture,           &Material::normal_texture,
-    &Material::transmission_texture,   &Material::metallic_roughness_texture, &Material::coat_texture,
-    &Material::sheen_color_texture,    &Material::anisotropy_texture,         &Material::specular_color_texture,
-    &Material::specular_texture,       &Material::occlusion_texture,          &Material::coat_normal_texture,
-    &Material::coat_roughness_texture, &Material::sheen_roughness_texture,    &Material::thickness_texture};
-static_assert(by_importance.size() == slot_names.size());
-
 /** Reads one material; every message names it. */
 class MaterialReader {
  public:
@@ -55,15 +46,12 @@ class MaterialReader {
 
   Material read()
   {
-    read_metallic_roughness();
-    read_specular();
-    read_layers();
+    read_factors();
+    read_alpha();
+    read_specular_color();
     read_transmission();
     read_emissive();
-    read_alpha();
     read_textures();
-    result_.is_double_sided = source_.is_double_sided;
-    result_.is_unlit = source_.is_unlit;
     return result_;
   }
 
@@ -85,78 +73,93 @@ class MaterialReader {
   StandIns &stand_ins_;
   Warnings &warnings_;
   Material result_;
+  /** As the file has it, without the strength. */
+  glm::vec3 emissive_factor_{0.0F};
   /** A copy of `result_` with 0.5 for each factor that moves. It decides which textures have an effect at some time. */
   Material moving_;
   std::vector<int> uv_sets_;
 
-  template <std::size_t Count>
-  static glm::dvec3 vec3(const std::array<double, Count> &values)
+  /** \a value within the limits of \a row. \a name: in the file, for a warning. */
+  float clamped(const scene::Description &row, std::string_view name, double value)
   {
-    return {values[0], values[1], values[2]};
-  }
-
-  float clamped(const char *factor, double value, double max)
-  {
-    const double result = std::clamp(value, 0.0, max);
-    if (result != value) {
-      warnings_.add(what_, std::string(factor) + " is " + text(value) + ", clamped to " + text(result));
+    const float result = row.nearest(value);
+    if (!row.allows(value)) {
+      warnings_.add(what_, std::string(name) + " is " + text(value) + ", clamped to " + text(result));
     }
-    return static_cast<float>(result);
+    return result;
   }
 
-  glm::vec3 clamped(const char *factor, const glm::dvec3 &value, double max)
+  /** Name of a factor in messages: its key, and for the factor of a texture that of the slot, "normalTexture.scale". */
+  static std::string name_of(std::string_view path)
   {
-    return {clamped(factor, value[0], max), clamped(factor, value[1], max), clamped(factor, value[2], max)};
+    const std::size_t last = path.rfind('/');
+    const std::string_view outer = path.substr(0, last == path.npos ? 0 : last);
+    const auto *const slot = std::ranges::find(scene::texture_inputs, outer, &scene::TextureInput::path);
+    const std::string key(path.substr(last + 1));
+    return slot == scene::texture_inputs.end() ? key : std::string(slot->key()) + '.' + key;
   }
 
-  void read_metallic_roughness()
+  /** The factors that mean in the file what they mean in the scene. */
+  void read_factors()
   {
-    result_.base_color = clamped("baseColorFactor", vec3(source_.base_color), 1.0);
-    result_.alpha = clamped("baseColorFactor", source_.base_color[3], 1.0);
-    result_.metallic = clamped("metallicFactor", source_.metallic, 1.0);
-    result_.roughness = clamped("roughnessFactor", source_.roughness, 1.0);
-  }
-
-  void read_specular()
-  {
-    result_.specular = clamped("specularFactor", source_.specular, 1.0);
-    result_.specular_color = clamped("specularColorFactor", vec3(source_.specular_color), large);
-    if (source_.ior) {
-      const double ior = valid_ior(*source_.ior);
-      if (ior != *source_.ior) {
-        warnings_.add(what_, "ior is " + text(*source_.ior) + ", clamped to " + text(ior));
+    Material::for_each_property([&](const auto &row) {
+      using Value = typename std::decay_t<decltype(row)>::Value;
+      const std::array<double, 4> *const numbers = source_.factor(row.name);
+      const bool is_converted = row.name == "ior" || row.name == "attenuation_distance" || row.name == "emissive";
+      if (numbers == nullptr || is_converted) {
+        return;
       }
-      // As a float, as the exporter has it, so that the quotient of both is exactly 1.
-      result_.specular_color *= reflectance_ratio(static_cast<float>(ior));
-      // A surface that reflects all light refracts none.
-      result_.ior = ior == 0.0 ? result_.ior : static_cast<float>(ior);
-    }
+      if constexpr (std::is_same_v<Value, bool>) {
+        result_.*row.member = (*numbers)[0] != 0.0;
+      }
+      else if constexpr (std::is_same_v<Value, float>) {
+        result_.*row.member = clamped(row, name_of(row.path), (*numbers)[0]);
+      }
+      else if constexpr (std::is_same_v<Value, glm::vec3>) {
+        for (int i = 0; i < 3; i++) {
+          (result_.*row.member)[i] = clamped(row, name_of(row.path), (*numbers)[std::size_t(i)]);
+        }
+      }
+    });
   }
 
-  void read_layers()
+  void read_specular_color()
   {
-    result_.coat = clamped("clearcoatFactor", source_.coat, 1.0);
-    result_.coat_roughness = clamped("clearcoatRoughnessFactor", source_.coat_roughness, 1.0);
-    result_.sheen_color = clamped("sheenColorFactor", vec3(source_.sheen_color), 1.0);
-    result_.sheen_roughness = clamped("sheenRoughnessFactor", source_.sheen_roughness, 1.0);
-    result_.anisotropy = clamped("anisotropyStrength", source_.anisotropy, 1.0);
-    result_.anisotropy_rotation = limited("anisotropyRotation", source_.anisotropy_rotation);
-    result_.coat_normal_scale = limited("clearcoatNormalTexture.scale", source_.coat_normal_scale);
+    const std::array<double, 4> *const source = source_.factor("ior");
+    if (source == nullptr) {
+      return;
+    }
+    const double ior = valid_ior((*source)[0]);
+    if (ior != (*source)[0]) {
+      warnings_.add(what_, "ior is " + text((*source)[0]) + ", clamped to " + text(ior));
+    }
+    // As a float, as the exporter has it, so that the quotient of both is exactly 1. A tint beyond the limit reflects
+    // all light, as the limit does.
+    const scene::Description row = scene::description_of<Material>("specular_color");
+    const float ratio = reflectance_ratio(static_cast<float>(ior));
+    for (int i = 0; i < 3; i++) {
+      result_.specular_color[i] = row.nearest(result_.specular_color[i] * ratio);
+    }
+    // A surface that reflects all light refracts none.
+    result_.ior = ior == 0.0 ? result_.ior : static_cast<float>(ior);
   }
 
   void read_transmission()
   {
-    result_.transmission = clamped("transmissionFactor", source_.transmission, 1.0);
-    result_.thickness = source_.own_thickness ? clamped("gnomon_thickness", *source_.own_thickness, large)
-                                              : clamped("thicknessFactor", source_.thickness, large);
-    result_.attenuation_color = clamped("attenuationColor", vec3(source_.attenuation_color), 1.0);
-    if (!source_.attenuation_distance) {
+    if (source_.own_thickness) {
+      const scene::Description thickness = scene::description_of<Material>("thickness");
+      result_.thickness = clamped(thickness, "gnomon_thickness", *source_.own_thickness);
+    }
+    const std::array<double, 4> *const source = source_.factor("attenuation_distance");
+    if (source == nullptr) {
       return;
     }
-    const double distance = *source_.attenuation_distance;
+    const double distance = (*source)[0];
     if (distance > 0.0) {
-      // Above the least float: 0 means that nothing is absorbed.
-      result_.attenuation_distance = static_cast<float>(std::clamp(distance, 1.0 / large, large));
+      // At least the minimum: 0 means that nothing is absorbed. Exporters write the largest number for that, so that a
+      // number beyond the limit needs no warning.
+      const scene::Description row = scene::description_of<Material>("attenuation_distance");
+      result_.attenuation_distance = static_cast<float>(std::clamp(distance, row.min, row.max));
     }
     else {
       warnings_.add(what_, "attenuationDistance is " + text(distance) + ", not above 0; nothing is absorbed");
@@ -166,7 +169,6 @@ class MaterialReader {
   void find_moving()
   {
     moving_ = result_;
-    moving_.is_unlit = source_.is_unlit;
     Material::for_each_property([&](const auto &row) {
       using Value = typename std::decay_t<decltype(row)>::Value;
       if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3>) {
@@ -176,14 +178,14 @@ class MaterialReader {
       }
     });
     if (moved_.contains(strength_path)) {
-      moving_.emissive = glm::max(moving_.emissive, glm::vec3(vec3(source_.emissive)));
+      moving_.emissive = glm::max(moving_.emissive, emissive_factor_);
     }
   }
 
   /** Whether the material's factors let the texture have an effect at some time. Other textures are not decoded. */
-  [[nodiscard]] bool is_read(const SlotName &name) const
+  [[nodiscard]] bool is_read(const scene::TextureInput &input) const
   {
-    const auto is_one_of = [&](auto... slots) { return ((name.target == slots) || ...); };
+    const auto is_one_of = [&](auto... slots) { return ((input.slot == slots) || ...); };
     if (is_one_of(&Material::coat_texture, &Material::coat_roughness_texture, &Material::coat_normal_texture)) {
       return moving_.coat > 0.0F;
     }
@@ -204,13 +206,34 @@ class MaterialReader {
 
   void read_emissive()
   {
-    const float strength = clamped("emissiveStrength", source_.emissive_strength, large);
-    result_.emissive = clamped("emissiveFactor", vec3(source_.emissive), 1.0) * strength;
+    const scene::Description row = scene::description_of<Material>("emissive");
+    scene::Description factor_row = row;
+    factor_row.max = 1.0;
+    if (const std::array<double, 4> *const source = source_.factor("emissive")) {
+      for (int i = 0; i < 3; i++) {
+        emissive_factor_[i] = clamped(factor_row, "emissiveFactor", (*source)[std::size_t(i)]);
+      }
+    }
+    // The limit is that of the product.
+    const double largest = std::max({emissive_factor_.r, emissive_factor_.g, emissive_factor_.b});
+    double strength = std::max(0.0, source_.emissive_strength);
+    if (!row.allows((largest > 0.0 ? largest : 1.0) * strength)) {
+      strength = row.max / (largest > 0.0 ? largest : 1.0);
+    }
+    if (strength != source_.emissive_strength) {
+      warnings_.add(what_, "emissiveStrength is " + text(source_.emissive_strength) + ", clamped to " + text(strength));
+    }
+    const double factor = float(std::min(strength, scene::float_max));
+    for (int i = 0; i < 3; i++) {
+      result_.emissive[i] = row.nearest(factor * double(emissive_factor_[i]));
+    }
   }
 
   void read_alpha()
   {
-    result_.alpha_cutoff = clamped("alphaCutoff", source_.alpha_cutoff, 2.0);
+    if (const std::array<double, 4> *const base_color = source_.factor("base_color")) {
+      result_.alpha = clamped(scene::description_of<Material>("alpha"), "baseColorFactor", (*base_color)[3]);
+    }
     if (source_.alpha_mode == "MASK") {
       result_.alpha_mode = AlphaMode::Mask;
     }
@@ -222,34 +245,21 @@ class MaterialReader {
     }
   }
 
-  /** Clamps to the range in which floats still distinguish texels. */
-  float limited(const char *member, double value)
-  {
-    constexpr double limit = 1e6;
-    const double result = std::clamp(value, -limit, limit);
-    if (result != value) {
-      warnings_.add(what_, std::string(member) + " is " + text(value) + ", clamped to " + text(result));
-    }
-    return static_cast<float>(result);
-  }
-
   void read_textures()
   {
-    result_.normal_scale = limited("normalTexture.scale", source_.normal_scale);
-    result_.occlusion_strength = clamped("occlusionTexture.strength", source_.occlusion_strength, 1.0);
     find_moving();
     choose_uv_sets();
-    for (const SlotName &name : slot_names) {
-      const Model::TextureSlot &slot = source_.*name.source;
-      if (slot.index >= 0 && is_read(name)) {
-        result_.*name.target = read_slot(name, slot);
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      const Model::TextureSlot *const slot = source_.texture(input.name);
+      if (slot != nullptr && is_read(input)) {
+        result_.*input.slot = read_slot(input, *slot);
       }
     }
   }
 
   /**
-   * The sets of the textures that are read, the most important ones if there are more than a mesh has. A texture
-   * without an effect has the importance of the last.
+   * The sets of the textures that are read: those of the lowest ranks if there are more than a mesh has. A texture
+   * without an effect comes after the others.
    */
   void choose_uv_sets()
   {
@@ -258,12 +268,13 @@ class MaterialReader {
         uv_sets_.push_back(set);
       }
     };
+    std::array inputs = scene::texture_inputs;
+    std::ranges::sort(inputs, {}, &scene::TextureInput::rank);
     for (const bool has_effect : {true, false}) {
-      for (TextureSlot Material::*const target : by_importance) {
-        const auto &name = *std::ranges::find(slot_names, target, &SlotName::target);
-        const Model::TextureSlot &slot = source_.*name.source;
-        if (slot.index >= 0 && is_read(name) && this->has_effect(name) == has_effect) {
-          add(slot.set);
+      for (const scene::TextureInput &input : inputs) {
+        const Model::TextureSlot *const slot = source_.texture(input.name);
+        if (slot != nullptr && is_read(input) && this->has_effect(input) == has_effect) {
+          add(slot->set);
         }
       }
     }
@@ -275,27 +286,27 @@ class MaterialReader {
   }
 
   /** Whether the texture may change a pixel. */
-  [[nodiscard]] bool has_effect(const SlotName &name) const
+  [[nodiscard]] bool has_effect(const scene::TextureInput &input) const
   {
     if (!source_.surface_uri.empty()) {
       return true;
     }
-    if (name.target == &Material::emissive_texture) {
-      return moving_.emissive != glm::vec3(0.0F) && !source_.is_unlit;
+    if (input.slot == &Material::emissive_texture) {
+      return moving_.emissive != glm::vec3(0.0F) && !result_.is_unlit;
     }
-    if (name.target == &Material::normal_texture) {
-      return moving_.normal_scale != 0.0F && !source_.is_unlit;
+    if (input.slot == &Material::normal_texture) {
+      return moving_.normal_scale != 0.0F && !result_.is_unlit;
     }
-    if (name.target == &Material::occlusion_texture) {
-      return moving_.occlusion_strength > 0.0F && !source_.is_unlit;
+    if (input.slot == &Material::occlusion_texture) {
+      return moving_.occlusion_strength > 0.0F && !result_.is_unlit;
     }
-    if (name.target == &Material::specular_texture || name.target == &Material::specular_color_texture) {
-      return moving_.specular > 0.0F && moving_.metallic < 1.0F && !source_.is_unlit;
+    if (input.slot == &Material::specular_texture || input.slot == &Material::specular_color_texture) {
+      return moving_.specular > 0.0F && moving_.metallic < 1.0F && !result_.is_unlit;
     }
-    return name.target == &Material::base_color_texture || !source_.is_unlit;
+    return input.slot == &Material::base_color_texture || !result_.is_unlit;
   }
 
-  TextureSlot read_slot(const SlotName &name, const Model::TextureSlot &slot)
+  TextureSlot read_slot(const scene::TextureInput &input, const Model::TextureSlot &slot)
   {
     TextureSlot result;
     try {
@@ -306,24 +317,24 @@ class MaterialReader {
                                          "important textures are kept");
       }
       result.uv_set = static_cast<int>(set - uv_sets_.begin());
-      const bool is_glossiness = source_.glossiness && name.target == &Material::metallic_roughness_texture;
+      const bool is_glossiness = source_.glossiness && input.slot == &Material::metallic_roughness_texture;
       result.texture =
           is_glossiness ? textures_.roughness_of(slot.index, *source_.glossiness) : textures_.handle_of(slot.index);
       // The derived image contains the factor.
       result_.roughness = is_glossiness ? 1.0F : result_.roughness;
     }
     catch (const Fault &fault) {
-      result.texture = stand_ins_.texture_of(name);
-      stand_ins_.warn(what_, name, fault, warnings_);
+      result.texture = stand_ins_.texture_of(input);
+      stand_ins_.warn(what_, input, fault, warnings_);
     }
+    const auto limited = [&](std::string_view name, double value) {
+      return clamped(scene::description_of<TextureSlot>(name), name, value);
+    };
     result.offset = {limited("offset", slot.offset[0]), limited("offset", slot.offset[1])};
     result.rotation = limited("rotation", slot.rotation);
     result.scale = {limited("scale", slot.scale[0]), limited("scale", slot.scale[1])};
     return result;
   }
-
-  /** Upper limit for factors without one in glTF. Products of a few such numbers are finite in float. */
-  static constexpr double large = 1e9;
 };
 
 }  // namespace
@@ -429,17 +440,17 @@ void MaterialImporter::finish(Progress &progress)
   }
   for (const auto &[handle, material] : scene_.materials()) {
     Material changed = material;
-    for (const SlotName &name : slot_names) {
-      TextureSlot &slot = changed.*name.target;
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      TextureSlot &slot = changed.*input.slot;
       const scene::Texture *texture = scene_.textures().find(slot.texture);
       const auto found = texture != nullptr ? damaged.find(texture->image) : damaged.end();
       if (found != damaged.end()) {
-        slot.texture = stand_ins_.texture_of(name);
+        slot.texture = stand_ins_.texture_of(input);
         const auto factor = factor_roughness_.find(handle);
-        if (name.target == &Material::metallic_roughness_texture && factor != factor_roughness_.end()) {
+        if (input.slot == &Material::metallic_roughness_texture && factor != factor_roughness_.end()) {
           changed.roughness = factor->second;
         }
-        stand_ins_.warn("material '" + printable(material.name) + '\'', name, found->second, warnings_);
+        stand_ins_.warn("material '" + printable(material.name) + '\'', input, found->second, warnings_);
       }
     }
     scene_.replace(handle, std::move(changed));

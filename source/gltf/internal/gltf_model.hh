@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -160,48 +161,30 @@ struct Model {
     std::string surface_uri;
     /** The extra gnomon_thickness, m, which replaces that of KHR_materials_volume. */
     std::optional<double> own_thickness;
-    std::array<double, 4> base_color{1.0, 1.0, 1.0, 1.0};
-    TextureSlot base_color_texture;
-    TextureSlot metallic_roughness_texture;
-    TextureSlot normal_texture;
-    double normal_scale = 1.0;
-    TextureSlot occlusion_texture;
-    double occlusion_strength = 1.0;
-    TextureSlot emissive_texture;
-    TextureSlot specular_texture;
-    TextureSlot specular_color_texture;
-    TextureSlot coat_texture;
-    TextureSlot coat_roughness_texture;
-    TextureSlot coat_normal_texture;
-    double coat_normal_scale = 1.0;
-    TextureSlot sheen_color_texture;
-    TextureSlot sheen_roughness_texture;
-    TextureSlot anisotropy_texture;
-    TextureSlot transmission_texture;
-    TextureSlot thickness_texture;
-    double metallic = 1.0;
-    double roughness = 1.0;
-    std::array<double, 3> emissive{0.0, 0.0, 0.0};
+    /**
+     * Numbers of the factors that the file has, by scene::Description::name. A base colour has alpha as the fourth; 1
+     * and 0 stand for true and false.
+     */
+    std::map<std::string_view, std::array<double, 4>> factors;
+    /** By scene::TextureInput::name. */
+    std::map<std::string_view, TextureSlot> textures;
     double emissive_strength = 1.0;
-    double specular = 1.0;
-    std::array<double, 3> specular_color{1.0, 1.0, 1.0};
-    std::optional<double> ior;
     /** KHR_materials_pbrSpecularGlossiness: the roughness texture has glossiness in its alpha, scaled by this. */
     std::optional<double> glossiness;
-    double coat = 0.0;
-    double coat_roughness = 0.0;
-    std::array<double, 3> sheen_color{0.0, 0.0, 0.0};
-    double sheen_roughness = 0.0;
-    double anisotropy = 0.0;
-    double anisotropy_rotation = 0.0;
-    double transmission = 0.0;
-    double thickness = 0.0;
-    std::optional<double> attenuation_distance;
-    std::array<double, 3> attenuation_color{1.0, 1.0, 1.0};
     std::string alpha_mode = "OPAQUE";
-    double alpha_cutoff = 0.5;
-    bool is_double_sided = false;
-    bool is_unlit = false;
+
+    /** nullptr: the file has none, and glTF's default counts, which is that of the scene. */
+    [[nodiscard]] const std::array<double, 4> *factor(std::string_view name) const
+    {
+      const auto found = factors.find(name);
+      return found == factors.end() ? nullptr : &found->second;
+    }
+    /** nullptr: there is no texture. */
+    [[nodiscard]] const TextureSlot *texture(std::string_view name) const
+    {
+      const auto found = textures.find(name);
+      return found == textures.end() || found->second.index < 0 ? nullptr : &found->second;
+    }
   };
   struct Texture {
     std::string name;

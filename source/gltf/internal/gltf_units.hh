@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scene_properties.hh"
+
 #include <algorithm>
 
 /** Internal to source/gltf. */
@@ -9,23 +11,14 @@ namespace gnomon::gltf {
 /** glTF's photometric units over radiometric ones, lm/W. */
 constexpr double lumen_per_watt = 683.0;
 
-/** Upper limit of numbers for which glTF defines none. Products of a few such numbers are finite in float. */
-constexpr double large = 1e12;
-
-/**
- * Largest accepted coordinate, metres. Its square and its cube are finite in float, and so are all lengths, areas and
- * volumes of an imported scene.
- */
-constexpr double coordinate_max = 1e12;
-
-/** Smallest positive length. The square of a smaller one would underflow in float. */
-constexpr double length_min = 1e-12;
+/** Largest accepted coordinate, metres: all lengths, areas and volumes of an imported scene are finite in float. */
+constexpr double coordinate_max = scene::number_max;
 
 /** The index of refraction that is used for \a ior of a file: 0, which stands for infinity, or at least 1. */
 constexpr double valid_ior(double ior)
 {
-  // The limit of factors without one in glTF.
-  return ior == 0.0 ? 0.0 : std::clamp(ior, 1.0, 1e9);
+  const scene::Description row = scene::description_of<scene::Material>("ior");
+  return ior == 0.0 ? 0.0 : std::clamp(ior, row.min, row.max);
 }
 
 /**

@@ -33,9 +33,6 @@ constexpr const char *rotation_key = "gnomon_world_rotation";
 constexpr std::array<std::string_view, 6> keys{picture_key, accessor_key, width_key,
                                                color_key,   strength_key, rotation_key};
 
-/** Those that a scene accepts. */
-constexpr Range factor_range{0.0, 1e30};
-constexpr Range angle_range{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
 constexpr Range index_range{0.0, std::numeric_limits<int>::max()};
 /** Its square exceeds all counts of texels. */
 constexpr Range width_range{1.0, 1 << 20};
@@ -98,9 +95,9 @@ class WorldImporter {
   World of_extras() const
   {
     World world;
-    world.color = extras_->color(color_key, world.color, factor_range);
-    world.strength = extras_->number(strength_key, world.strength, factor_range);
-    world.rotation = extras_->number(rotation_key, world.rotation, angle_range);
+    world.color = extras_->color(color_key, world.color, range_of<World>("color"));
+    world.strength = extras_->number(strength_key, world.strength, range_of<World>("strength"));
+    world.rotation = extras_->number(rotation_key, world.rotation, range_of<World>("rotation"));
     const std::optional<int> accessor = extras_->whole_if_any(accessor_key, index_range);
     const std::optional<int> width = extras_->whole_if_any(width_key, width_range);
     const Model::Extra *given = extras_->find(picture_key);
@@ -118,7 +115,7 @@ class WorldImporter {
       world.picture = usable([&] { return picture_of_file(*uri); });
     }
     else if (std::holds_alternative<std::vector<double>>(*given)) {
-      world.color *= extras_->color(picture_key, world.color, factor_range);
+      world.color *= extras_->color(picture_key, world.color, range_of<World>("color"));
     }
     else {
       extras_->fail(picture_key, written(*given), "three numbers or the name of a file");
@@ -128,8 +125,9 @@ class WorldImporter {
 
   World of_light(const Model::ImageLight &light, const std::string &name, bool has_lamps) const
   {
-    if (!factor_range.contains(light.intensity)) {
-      throw LeftOut("its intensity is " + text(light.intensity) + ", and must be " + factor_range.text());
+    const Range intensities = range_of<World>("strength");
+    if (!intensities.contains(light.intensity)) {
+      throw LeftOut("its intensity is " + text(light.intensity) + ", and must be " + intensities.text());
     }
     const auto &[x, y, z, w] = light.rotation;
     if (!is_rotation({x, y, z, w})) {

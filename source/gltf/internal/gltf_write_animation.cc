@@ -4,7 +4,6 @@
 #include "internal/gltf_model.hh"
 #include "internal/gltf_pointer.hh"
 #include "internal/gltf_report.hh"
-#include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 #include "internal/gltf_write_mesh.hh"
 
@@ -161,10 +160,9 @@ class AnimationWriter {
     }
     if (!value.slot.empty()) {
       const auto *const input = std::ranges::find(scene::texture_inputs, value.slot, &scene::TextureInput::name);
-      const SlotName &slot = slot_names[std::size_t(input - scene::texture_inputs.begin())];
       add_pointer(*value.track, output(value.track->values, value.track->width),
-                  "/materials/" + std::to_string(*index) + '/' + path_of(slot) + std::string(transform_path) +
-                      std::string(value.property));
+                  "/materials/" + std::to_string(*index) + '/' + std::string(input->path) +
+                      std::string(transform_path) + std::string(value.property));
       return;
     }
     if (value.second_track) {

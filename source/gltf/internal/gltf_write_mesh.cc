@@ -3,6 +3,7 @@
 
 #include "image_base64.hh"
 #include "internal/gltf_model.hh"
+#include "internal/gltf_pointer.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_sampler.hh"
 #include "internal/gltf_units.hh"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 namespace gnomon::gltf {
 
@@ -27,6 +29,9 @@ using scene::TextureFilter;
 using scene::TextureWrap;
 
 namespace {
+
+/** Of the extensions of a material. */
+constexpr std::string_view extensions_path = "extensions/";
 
 /** The name that the importer gives to a primitive without a name. */
 std::string derived_name(const std::string &mesh_name, std::size_t primitive, std::size_t primitive_count)
@@ -233,99 +238,62 @@ void MeshWriter::add_positions(std::string_view key, const std::vector<glm::vec3
   attributes.add(key, std::to_string(buffer_.add_accessor(positions, Model::Float, "VEC3", limits)));
 }
 
-/** Whether one of the \a members of a material has another value than a new material. */
-template <typename... Members>
-static bool differs(const Material &material, Members... members)
+/** An object of a material, such as an extension or a texture slot. */
+struct MaterialPart {
+  JsonText json;
+  /** It has another value than that of a material without it. */
+  bool is_needed = false;
+};
+
+/** The objects of a material by their paths from it; the material's own is empty. */
+using MaterialParts = std::map<std::string_view, MaterialPart>;
+
+static void add_member(MaterialParts &parts, std::string_view path, const std::string &value, bool is_needed)
+{
+  const std::size_t last = path.rfind('/');
+  MaterialPart &part = parts[path.substr(0, last == path.npos ? 0 : last)];
+  part.json.add(path.substr(last + 1), value);
+  part.is_needed |= is_needed;
+}
+
+/** Adds the properties that have a place in glTF. \a material: with the values of the file */
+static void add_factors(const Material &material, const std::string &what, MaterialParts &parts)
 {
   static const Material plain;
-  return (!(material.*members == plain.*members) || ...);
-}
-
-void MeshWriter::add_extension(JsonText &used, const char *name, const std::string &value)
-{
-  extensions.insert(name);
-  used.add(name, value);
-}
-
-void MeshWriter::add_layers(const Material &material, const std::string &what, JsonText &used)
-{
-  if (differs(material, &Material::coat, &Material::coat_roughness) || material.coat_texture ||
-      material.coat_roughness_texture || material.coat_normal_texture) {
-    JsonText coat;
-    coat.add("clearcoatFactor", json_number(material.coat, what));
-    coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
-    add_slot(coat, "clearcoatTexture", material.coat_texture, what);
-    add_slot(coat, "clearcoatRoughnessTexture", material.coat_roughness_texture, what);
-    add_slot(coat, "clearcoatNormalTexture", material.coat_normal_texture, what,
-             ",\"scale\":" + json_number(material.coat_normal_scale, what));
-    add_extension(used, "KHR_materials_clearcoat", coat.object());
-  }
-  if (differs(material, &Material::sheen_color, &Material::sheen_roughness) || material.sheen_color_texture ||
-      material.sheen_roughness_texture) {
-    JsonText sheen;
-    sheen.add("sheenColorFactor", json_numbers(material.sheen_color, what));
-    sheen.add("sheenRoughnessFactor", json_number(material.sheen_roughness, what));
-    add_slot(sheen, "sheenColorTexture", material.sheen_color_texture, what);
-    add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
-    add_extension(used, "KHR_materials_sheen", sheen.object());
-  }
-  if (differs(material, &Material::anisotropy, &Material::anisotropy_rotation) || material.anisotropy_texture) {
-    JsonText anisotropy;
-    anisotropy.add("anisotropyStrength", json_number(material.anisotropy, what));
-    anisotropy.add("anisotropyRotation", json_number(material.anisotropy_rotation, what));
-    add_slot(anisotropy, "anisotropyTexture", material.anisotropy_texture, what);
-    add_extension(used, "KHR_materials_anisotropy", anisotropy.object());
-  }
-}
-
-void MeshWriter::add_transmission(const Material &material, const std::string &what, JsonText &used)
-{
-  if (differs(material, &Material::transmission) || material.transmission_texture) {
-    JsonText transmission;
-    transmission.add("transmissionFactor", json_number(material.transmission, what));
-    add_slot(transmission, "transmissionTexture", material.transmission_texture, what);
-    add_extension(used, "KHR_materials_transmission", transmission.object());
-  }
-  if (differs(material, &Material::thickness, &Material::attenuation_distance, &Material::attenuation_color) ||
-      material.thickness_texture) {
-    JsonText volume;
-    volume.add("thicknessFactor", json_number(material.thickness, what));
-    add_slot(volume, "thicknessTexture", material.thickness_texture, what);
-    volume.add("attenuationColor", json_numbers(material.attenuation_color, what));
-    if (material.attenuation_distance > 0.0F) {
-      volume.add("attenuationDistance", json_number(material.attenuation_distance, what));
+  Material::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    const auto &value = material.*row.member;
+    const bool is_needed = value != plain.*row.member;
+    if (row.path.empty()) {
+      return;
     }
-    add_extension(used, "KHR_materials_volume", volume.object());
-  }
-}
-
-JsonText MeshWriter::material_extensions(const Material &material, const std::string &what)
-{
-  JsonText used;
-  const IorAndColor split = without_ior(material);
-  if (split.ior) {
-    add_extension(used, "KHR_materials_ior", "{\"ior\":" + json_number(*split.ior, what) + '}');
-  }
-  if (material.specular != 1.0F || split.specular_color != glm::vec3(1.0F) || material.specular_texture ||
-      material.specular_color_texture) {
-    JsonText specular;
-    specular.add("specularFactor", json_number(material.specular, what));
-    specular.add("specularColorFactor", json_numbers(split.specular_color, what));
-    add_slot(specular, "specularTexture", material.specular_texture, what);
-    add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
-    add_extension(used, "KHR_materials_specular", specular.object());
-  }
-  // Values that have no effect now are kept, too: another value may give them one.
-  add_layers(material, what, used);
-  add_transmission(material, what, used);
-  if (const float strength = emissive_strength(material.emissive); strength != 1.0F) {
-    add_extension(used, "KHR_materials_emissive_strength",
-                  "{\"emissiveStrength\":" + json_number(strength, what) + '}');
-  }
-  if (material.is_unlit) {
-    add_extension(used, "KHR_materials_unlit", "{}");
-  }
-  return used;
+    if constexpr (std::is_same_v<Value, bool>) {
+      if (row.path.starts_with(extensions_path)) {
+        // The extension has no members.
+        parts[row.path].is_needed = value;
+      }
+      else {
+        add_member(parts, row.path, value ? "true" : "false", is_needed);
+      }
+    }
+    else if constexpr (std::is_same_v<Value, float>) {
+      // Without the member, glTF has what 0 stands for.
+      if (value != 0.0F || row.zero.empty()) {
+        add_member(parts, row.path, json_number(value, what), is_needed);
+      }
+    }
+    else if constexpr (std::is_same_v<Value, glm::vec3>) {
+      const bool has_alpha = row.name == "base_color";
+      add_member(parts, row.path,
+                 has_alpha ? json_numbers(glm::vec4(value, material.alpha), what) : json_numbers(value, what),
+                 is_needed);
+    }
+  });
+  add_member(parts, "alphaMode",
+             material.alpha_mode == AlphaMode::Mask    ? "\"MASK\""
+             : material.alpha_mode == AlphaMode::Blend ? "\"BLEND\""
+                                                       : "\"OPAQUE\"",
+             true);
 }
 
 int MeshWriter::material(Handle<Material> handle)
@@ -335,28 +303,36 @@ int MeshWriter::material(Handle<Material> handle)
   }
   const Material &material = scene_.materials()[handle];
   const std::string what = what_of("material", material.name);
-  JsonText roughness;
-  roughness.add("baseColorFactor", json_numbers(glm::vec4(material.base_color, material.alpha), what));
-  add_slot(roughness, "baseColorTexture", material.base_color_texture, what);
-  roughness.add("metallicFactor", json_number(material.metallic, what));
-  roughness.add("roughnessFactor", json_number(material.roughness, what));
-  add_slot(roughness, "metallicRoughnessTexture", material.metallic_roughness_texture, what);
   const float strength = emissive_strength(material.emissive);
-  const JsonText used = material_extensions(material, what);
-  JsonText json;
+  const IorAndColor split = without_ior(material);
+  Material written = material;
+  written.emissive /= strength;
+  written.ior = split.ior.value_or(Material().ior);
+  written.specular_color = split.specular_color;
+  MaterialParts parts;
+  // Values that have no effect now are kept, too: another value may give them one.
+  add_factors(written, what, parts);
+  if (strength != 1.0F) {
+    add_member(parts, strength_path, json_number(strength, what), true);
+  }
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    // It has the slot's factor, if there is one.
+    JsonText &slot = parts[input.path].json;
+    if (add_slot(slot, material.*input.slot, what)) {
+      add_member(parts, input.path, slot.object(), true);
+    }
+  }
+  JsonText used;
+  for (const auto &[path, part] : parts) {
+    const std::string_view name = path.substr(std::min(path.size(), extensions_path.size()));
+    if (part.is_needed && path.starts_with(extensions_path) && name.find('/') == name.npos) {
+      extensions.insert(std::string(name));
+      used.add(name, part.json.object());
+    }
+  }
+  JsonText &json = parts[""].json;
   json.add("name", json_string(material.name, what));
-  json.add("pbrMetallicRoughness", roughness.object());
-  json.add("emissiveFactor", json_numbers(material.emissive / strength, what));
-  json.add("alphaMode", material.alpha_mode == AlphaMode::Mask    ? "\"MASK\""
-                        : material.alpha_mode == AlphaMode::Blend ? "\"BLEND\""
-                                                                  : "\"OPAQUE\"");
-  json.add("alphaCutoff", json_number(material.alpha_cutoff, what));
-  json.add("doubleSided", material.is_double_sided ? "true" : "false");
-  add_slot(json, "normalTexture", material.normal_texture, what,
-           ",\"scale\":" + json_number(material.normal_scale, what));
-  add_slot(json, "occlusionTexture", material.occlusion_texture, what,
-           ",\"strength\":" + json_number(material.occlusion_strength, what));
-  add_slot(json, "emissiveTexture", material.emissive_texture, what);
+  json.add("pbrMetallicRoughness", parts["pbrMetallicRoughness"].json.object());
   if (!used.empty()) {
     json.add("extensions", used.object());
   }
@@ -373,23 +349,23 @@ std::string MeshWriter::surface_uri(const scene::SurfaceFunction &function) cons
   return uri.empty() ? "data:text/plain;base64," + image::base64(text) : uri;
 }
 
-void MeshWriter::add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
-                          const std::string &factor)
+bool MeshWriter::add_slot(JsonText &json, const scene::TextureSlot &slot, const std::string &what)
 {
   const Texture *found = scene_.textures().find(slot.texture);
   if (found == nullptr || !scene_.images().is_live(found->image)) {
-    return;
+    return false;
   }
-  std::string text = "{\"index\":" + std::to_string(texture(slot.texture)) + factor;
+  json.add("index", std::to_string(texture(slot.texture)));
   if (slot.uv_set != 0) {
-    text += ",\"texCoord\":" + std::to_string(slot.uv_set);
+    json.add("texCoord", std::to_string(slot.uv_set));
   }
   if (slot.is_transformed()) {
     extensions.insert("KHR_texture_transform");
-    text += ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":" + json_numbers(slot.offset, what) +
-            ",\"rotation\":" + json_number(slot.rotation, what) + ",\"scale\":" + json_numbers(slot.scale, what) + "}}";
+    json.add("extensions", "{\"KHR_texture_transform\":{\"offset\":" + json_numbers(slot.offset, what) +
+                               ",\"rotation\":" + json_number(slot.rotation, what) +
+                               ",\"scale\":" + json_numbers(slot.scale, what) + "}}");
   }
-  json.add(key, text + '}');
+  return true;
 }
 
 int MeshWriter::texture(Handle<Texture> handle)

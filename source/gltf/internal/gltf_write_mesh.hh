@@ -73,14 +73,8 @@ class MeshWriter {
   void add_deformation(const scene::DeformedMesh &deformed, const std::string &what, JsonText &attributes,
                        JsonText &primitive);
   int material(scene::Handle<scene::Material> handle);
-  [[nodiscard]] JsonText material_extensions(const scene::Material &material, const std::string &what);
-  /** Adds the extensions of coat, sheen and anisotropy, and of transmission and volume, to those that are \a used. */
-  void add_layers(const scene::Material &material, const std::string &what, JsonText &used);
-  void add_transmission(const scene::Material &material, const std::string &what, JsonText &used);
-  void add_extension(JsonText &used, const char *name, const std::string &value);
-  /** Adds the slot if it has a texture. \a factor: further JSON members of the slot. */
-  void add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
-                const std::string &factor = "");
+  /** Adds the members of the slot to \a json, if it has a texture. \return whether it has. */
+  bool add_slot(JsonText &json, const scene::TextureSlot &slot, const std::string &what);
   /** A URI of the function's file, relative to the folder; of its text, if there is no such file. */
   [[nodiscard]] std::string surface_uri(const scene::SurfaceFunction &function) const;
   int texture(scene::Handle<scene::Texture> handle);

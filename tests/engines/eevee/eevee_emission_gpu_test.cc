@@ -173,12 +173,11 @@ TEST_F(EmissionTest, IsFiniteForExtremeStrengthsAndContact)
   });
   test::add_object(scene, test::add_square_mesh(scene, metal),
                    glm::scale(glm::translate(glm::dmat4(1.0), {0.3, 0, 0.001}), glm::dvec3(0.2)));
-  for (const float strength : {1e-30F, 1e6F, 1e30F, 3e38F}) {
+  for (const float strength : {1e-30F, 1e6F, float(scene::light_max)}) {
     scene.edit(emitter, [&](scene::Material &material) { material.emissive = glm::vec3(strength); });
     test::Renderer renderer(*device, scene, {24, 16}, {.sample_count = 4});
     const test::Picture picture = renderer.picture(test::camera_at({0.6F, 0.0F, 0.4F}, {0.1F, 0.0F, 0.0F}));
-    // Emission that is seen is the sum of samples, of which the largest factor is the largest number.
-    EXPECT_EQ(strength <= 1e30F ? picture.non_finite_count() : 0U, 0U) << strength;
+    EXPECT_EQ(picture.non_finite_count(), 0U) << strength;
     if (strength == 1e6F) {
       for (const glm::vec4 &pixel : picture.pixels) {
         // No surface sends out more than the brightest that it can see.

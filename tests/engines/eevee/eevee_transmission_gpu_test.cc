@@ -561,8 +561,8 @@ TEST_F(TransmissionGpuTest, HostileValuesStayFinite)
   test::add_object(scene, test::add_box_mesh(scene, glass), at_height(0.5, {0.5, 0.5, 0.0}));
   Renderer renderer(*device, scene, square_size_px);
   constexpr float largest = std::numeric_limits<float>::max();
-  for (const float extreme :
-       {0.0F, -1.0F, std::numeric_limits<float>::denorm_min(), 1e-30F, 1e30F, largest, infinity, nan}) {
+  for (const float extreme : {0.0F, -1.0F, std::numeric_limits<float>::denorm_min(), 1e-30F, float(scene::number_max),
+                              largest, infinity, nan}) {
     SCOPED_TRACE(extreme);
     const auto expect_finite = [&](const auto &change) {
       // Also false for NaN.

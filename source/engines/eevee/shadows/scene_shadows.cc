@@ -35,8 +35,8 @@ static void check(const ShadowSettings &settings)
     throw gpu::Error("shadow settings: {}", fault);
   }
   if (!pcf_kernel_of(text_of(settings.pcf))) {
-    throw gpu::Error("shadow settings: pcf.width {} and pcf.taps {} are none of 1, 3x3, 5x5, and 0 with 1 to 64",
-                     settings.pcf.width, settings.pcf.taps);
+    throw gpu::Error("shadow settings: pcf.width {} and pcf.taps {} are none of 1, 3x3, 5x5, and 0 with 1 to {}",
+                     settings.pcf.width, settings.pcf.taps, PcfKernel::taps_max);
   }
 }
 

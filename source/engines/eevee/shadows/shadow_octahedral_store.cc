@@ -27,7 +27,8 @@ float esm_exponent(EsmMethod method, float filter_angle, int size_px, float rang
   const bool is_esm = method == EsmMethod::Esm;
   const float spread_at_half_range = is_esm ? 0.5F : 0.0625F;
   const float angle = is_esm ? std::max(filter_angle, mean_texel_angle(size_px)) : filter_angle;
-  return std::clamp(spread_at_half_range / std::max(0.5F * angle * range, 1e-30F), 0.01F, 1e4F);
+  constexpr scene::Description limits = scene::description_of<EsmSettings>("shadow_exponent");
+  return limits.nearest(spread_at_half_range / std::max(0.5F * angle * range, 1e-30F));
 }
 
 int esm_cube_size_px(int size_px)
