@@ -62,6 +62,19 @@ static bool is_transient(const std::exception &error)
          dynamic_cast<const output::TransientError *>(&error) || dynamic_cast<const gltf::ImportOutOfMemory *>(&error);
 }
 
+/** Lets options refuse empty values, which scripts give by variables that are not set. */
+static void refuse_empty_values(CLI::App &app)
+{
+  for (CLI::Option *option : app.get_options()) {
+    if (option->get_items_expected_max() > 0) {
+      option->check([](const std::string &value) { return value.empty() ? "the value is empty" : ""; });
+    }
+  }
+  for (CLI::App *command : app.get_subcommands({})) {
+    refuse_empty_values(*command);
+  }
+}
+
 static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
@@ -79,6 +92,7 @@ static Status run(int argc, char **argv)
   add_shaders(app, status);
   add_bench(app, status);
   add_view(app);
+  refuse_empty_values(app);
   try {
     // Compilers have these names of more than one letter after one dash, and CLI11 has not.
     std::vector<std::string> arguments(argv + 1, argv + argc);

@@ -103,13 +103,15 @@ Status plan(const PlanOptions &options, const CLI::App &command)
       throw UsageError(fmt::format("--pictures '{}' does not end in .exr", render.output));
     }
     const FrameSequence frames(render.frames, render.output);
-    // The first picture stands for all frames, because their names differ by the number only.
+    // The first picture stands for the folder of all frames, because their names differ by the number only.
     const fs::path first = frames.path(0);
     if (first.has_parent_path() && !fs::is_directory(first.parent_path())) {
       throw std::runtime_error(
           fmt::format("--pictures '{}': the folder '{}' does not exist", render.output, first.parent_path().string()));
     }
-    roles.add_output(first, "--pictures of " + path);
+    for (int i = 0; i < frames.count(); i++) {
+      roles.add_output(frames.path(i), "--pictures of " + path);
+    }
     const bool can_divide_pictures =
         render.debug.empty() && render.aov.empty() && render.engine_settings().noise_threshold == 0.0F;
     if (options.tile_count > 1 && !can_divide_pictures) {
@@ -118,7 +120,7 @@ Status plan(const PlanOptions &options, const CLI::App &command)
     if (options.tile_count > render.size_px().y) {
       throw UsageError(fmt::format("--tiles {}: the picture has {} rows", options.tile_count, render.size_px().y));
     }
-    MeasuredScene measured = measure_scene(render, device.get());
+    MeasuredScene measured = measure_scene(render, device.get(), roles);
     if (!device) {
       measured.cost.sample_seconds = options.seconds_per_frame / render.samples;
     }

@@ -44,6 +44,9 @@ namespace {
 void add_files(const RenderOptions &options, const FrameSequence &frames, output::Roles &roles)
 {
   roles.add_input(options.scene, "the scene");
+  if (!options.part.empty()) {
+    roles.add_input(options.plan, "--part");
+  }
   if (!options.choice.report_folder.empty()) {
     roles.add_input(fs::path(options.choice.report_folder) / "report.json", "--report");
   }
@@ -525,6 +528,12 @@ Status render_scenes(const RenderOptions &options, RenderResult &result)
     add_files(one, FrameSequence(one.frames, one.output), roles);
     static_cast<void>(Aov(one.aov));
   }
+  // A later scene is read after the pictures of an earlier one are written.
+  for (std::size_t i = 1; i < scenes.size(); i++) {
+    for (const std::string &file : gltf::files_named_by(scenes[i].scene)) {
+      roles.add_input(file, "a file of " + scenes[i].scene);
+    }
+  }
   keep_text_from(roles);
   std::future<ImportedScene> import = start_import(scenes.front(), stops);
   const std::unique_ptr<gpu::Device> device = create_device_during(import, options.backend);
@@ -616,6 +625,7 @@ RenderOptions options_of_part(const RenderOptions &given, const WorkPlan &plan, 
   options.plan_id = plan.id();
   options.planned_scene = scene.fingerprint;
   options.part = given.part;
+  options.plan = fs::absolute(PartName(given.part).plan);
   options.stop_seconds = given.stop_seconds;
   options.has_progress_lines = given.has_progress_lines;
   const auto absolute = [](const std::string &path) { return path.empty() ? path : fs::absolute(path).string(); };
@@ -686,10 +696,11 @@ Status render_part(const RenderOptions &given, const CLI::App &command)
 
 }  // namespace
 
-MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
+MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device, output::Roles &roles)
 {
   const Clock::time_point start = Clock::now();
   scene::Scene scene = import_scene(options.scene, options.world, options.import_options());
+  add_inputs(roles, scene, options.world);
   MeasuredScene measured{content_fingerprint(scene, options.world), {}};
   FrameSequence frames(options.frames, options.output);
   // A plan refuses the options that each of its parts would refuse.

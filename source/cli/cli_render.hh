@@ -5,6 +5,7 @@
 #include "cli_work_plan.hh"
 
 #include "gpu_device.hh"
+#include "output_roles.hh"
 
 namespace gnomon::cli {
 
@@ -16,8 +17,9 @@ struct MeasuredScene {
 
 /**
  * Imports the scene of \a options and, if \a device is not null, draws some samples of the middle frame on it.
- * \throws std::runtime_error as `gnomon render`
+ * \a roles: receives the files of the scene as inputs.
+ * \throws std::runtime_error as `gnomon render`; output::Conflict where an output would replace an input
  */
-[[nodiscard]] MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device);
+[[nodiscard]] MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device, output::Roles &roles);
 
 }  // namespace gnomon::cli

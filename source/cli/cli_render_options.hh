@@ -55,6 +55,8 @@ struct RenderOptions {
   bool is_strict = false;
   /** "PLAN.json:K": the options are those of a part of a plan; empty: none. */
   std::string part;
+  /** The file of that plan. */
+  std::filesystem::path plan;
   /** Time after which the work ends, s; infinity: none. */
   double stop_seconds = std::numeric_limits<double>::infinity();
   /** Whether an unfinished picture is written for `gnomon merge`. */

@@ -441,7 +441,7 @@ std::string left_out_of_export(const std::filesystem::path &path)
 {
   try {
     Warnings ignored;
-    const std::size_t count = load_file(path, {}, ignored).model.variants.size();
+    const std::size_t count = load_document(path, ignored).model.variants.size();
     return count == 0 ? "" : std::to_string(count) + (count == 1 ? " variant" : " variants") + " of materials";
   }
   catch (const std::exception &) {

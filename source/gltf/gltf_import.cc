@@ -440,9 +440,6 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     for (const std::filesystem::path &named : files_of(file)) {
       scene.files.push_back(named.string());
     }
-    if (scene.world() && scene.world()->picture && !scene.world()->picture->path.empty()) {
-      scene.files.push_back(scene.world()->picture->path);
-    }
     progress.finish();
     return scene;
   }
@@ -462,6 +459,21 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     // Libraries may throw exceptions of other types.
     throw failed(printable(error.what()));
   }
+}
+
+std::vector<std::string> files_named_by(const std::filesystem::path &path)
+{
+  std::vector<std::string> files;
+  try {
+    Warnings ignored;
+    for (const std::filesystem::path &named : files_of(load_document(path, ignored))) {
+      files.push_back(named.string());
+    }
+  }
+  catch (const Fault &) {
+    // import_gltf has the reason.
+  }
+  return files;
 }
 
 }  // namespace gnomon::gltf

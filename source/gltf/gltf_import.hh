@@ -153,4 +153,10 @@ constexpr void ImportOptions::for_each_property(Visit &&visit)
  */
 [[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options = {});
 
+/**
+ * The regular files that the file at \a path names: buffers, images, surface functions and worlds, whether the scene
+ * uses them or not. Reads the document alone. Empty if it cannot be read: import_gltf has the reason.
+ */
+[[nodiscard]] std::vector<std::string> files_named_by(const std::filesystem::path &path);
+
 }  // namespace gnomon::gltf

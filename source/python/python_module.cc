@@ -386,11 +386,20 @@ void define_errors(py::module_ &module)
   py::register_exception<gltf::ImportError>(module, "FileError", base.ptr());
   static const py::handle file_error = module.attr("FileError");
   py::register_exception_translator([](std::exception_ptr thrown) {
+    // Names of files may be no UTF-8, which PyErr_SetString needs.
+    const auto raise_file_error = [](std::string_view message) {
+      const auto text = py::reinterpret_steal<py::object>(
+          PyUnicode_DecodeUTF8(message.data(), py::ssize_t(message.size()), "surrogateescape"));
+      PyErr_SetObject(file_error.ptr(), text.ptr());
+    };
     try {
       std::rethrow_exception(thrown);
     }
+    catch (const gltf::ImportError &error) {
+      raise_file_error(error.what());
+    }
     catch (const gltf::ExportError &error) {
-      PyErr_SetString(file_error.ptr(), error.what());
+      raise_file_error(error.what());
     }
   });
   py::register_exception<scene::StaleHandle>(module, "StaleHandle", base.ptr());

@@ -142,9 +142,12 @@ TEST_F(OutputsTest, AnInputOrAnotherOutputIsNotReplaced)
   fs::create_symlink("index.html", folder / "stability" / "stability.csv");
   const std::string render = "render s.glb --size 16x16 --samples 1 ";
   const std::string render_m = "render m.gltf --size 16x16 --samples 1 ";
+  const std::string plan = " --size 16x16 --samples 1 --seconds-per-frame 1 ";
+  ASSERT_EQ(run("plan s.glb" + plan + "--pictures p.exr -o p.json").status, 0);
+  fs::copy_file(folder / "s.glb", folder / "a.glb");
   const auto content = [&] {
     std::string all;
-    for (const char *name : {"s.glb", "a.exr", "b.exr", "m.gltf", "m.bin", "i m.png", "m.surface.glsl"}) {
+    for (const char *name : {"s.glb", "a.exr", "b.exr", "m.gltf", "m.bin", "i m.png", "m.surface.glsl", "p.json"}) {
       all += read(name);
     }
     return all;
@@ -167,6 +170,14 @@ TEST_F(OutputsTest, AnInputOrAnotherOutputIsNotReplaced)
            render_m + "-o 'i m.png'",
            render_m + "-o o.exr --trace m.surface.glsl",
            render_m + "-o a.exr",
+           std::string("render a.glb m.gltf --size 16x16 --samples 1 -o '{scene}.exr'"),
+           std::string("render --part p.json:0 --json p.json"),
+           std::string("render --part p.json:0 --trace here/p.json"),
+           "plan m.gltf" + plan + "-o m.bin",
+           "plan m.gltf" + plan + "-o 'i m.png'",
+           "plan m.gltf" + plan + "-o a.exr",
+           "plan m.gltf" + plan + "--pictures a.exr -o o.json",
+           "plan s.glb" + plan + "--world b.exr -o b.exr",
            std::string("compare a.exr b.exr --difference a.exr"),
            std::string("compare a.exr b.exr --difference here/b.exr"),
            std::string("compare a.exr b.exr --json b.exr"),

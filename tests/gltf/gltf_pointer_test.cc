@@ -195,6 +195,42 @@ TEST(GltfPointer, BothAnglesOfConesArePlayed)
   expect_cones(scenes(false, true), 1.0, 0.5, 0.5);
 }
 
+TEST(GltfPointer, WeightsOfAMeshMoveTheNodesWithoutWeightsOfTheirOwn)
+{
+  GltfBuilder builder = triangle_scene();
+  const int up = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  builder.document["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}};
+  builder.node({{"name", "second"}, {"mesh", 0}});
+  builder.node({{"name", "own"}, {"mesh", 0}, {"weights", {0.25}}});
+  add_channel(builder, pointer_to("/meshes/0/weights"), {0, 1}, {0, 1}, "SCALAR");
+  Scene scene = import(builder);
+  pose_first(scene, 0.5);
+  EXPECT_EQ(nth(scene.meshes(), 0).positions[1].z, 0.5F);
+  EXPECT_EQ(nth(scene.meshes(), 1).positions[1].z, 0.5F);
+  EXPECT_EQ(nth(scene.meshes(), 2).positions[1].z, 0.25F);
+}
+
+TEST(GltfPointer, AnAnimationOfThingsThatTheSceneLacksMovesNothing)
+{
+  for (const char *path :
+       {"/materials/1/alphaCutoff", "/materials/1/normalTexture/extensions/KHR_texture_transform/offset",
+        "/materials/7/alphaCutoff"}) {
+    GltfBuilder builder = triangle_scene();
+    builder.document["materials"] = {{{"name", "used"}}, {{"name", "of another variant"}}};
+    builder.document["meshes"][0]["primitives"][0]["material"] = 0;
+    add_channel(builder, pointer_to(path), {0, 1}, {0, 1}, "SCALAR");
+    Scene scene = import(builder);
+    EXPECT_WARNING(scene, "channel left out: pointer: its target is not in the scene");
+    const bool is_in_file = std::string(path).starts_with("/materials/1");
+    ASSERT_EQ(scene.animations.size(), is_in_file ? 1U : 0U) << path;
+    if (is_in_file) {
+      const scene::Revision before = scene.revision();
+      pose_first(scene, 0.5);
+      EXPECT_EQ(scene.revision(), before);
+    }
+  }
+}
+
 TEST(GltfPointer, WhatIsNotPlayedIsNamed)
 {
   const auto expect_left_out = [](const json &target, const std::string &why) {

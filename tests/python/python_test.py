@@ -291,6 +291,9 @@ class Scenes(unittest.TestCase):
             self.assertEqual(loaded.materials[0].base_color, (0.5, 0.25, 0.125))
             with self.assertRaisesRegex(gnomon.FileError, "nowhere"):
                 scene.save(os.path.join(folder, "nowhere", "saved.glb"))
+            for name in (b"/\xe9.glb", "/\udce9.glb"):
+                with self.assertRaisesRegex(gnomon.FileError, "\udce9.glb: "):
+                    gnomon.load(name)
 
 
 class Pictures(unittest.TestCase):

@@ -36,6 +36,11 @@ namespace {
  */
 constexpr std::size_t value_count_max = std::size_t(1) << 26U;
 
+/** The target of a channel is in the file and not in the scene, such as a material of another variant. */
+struct UnusedTarget : Fault {
+  using Fault::Fault;
+};
+
 class AnimationImporter {
  public:
   AnimationImporter(const File &file, const ImportedThings &things, Warnings &warnings, scene::Scene &scene)
@@ -69,6 +74,8 @@ class AnimationImporter {
     std::map<int, std::size_t> node_places;
     std::set<std::string> targets;
     bool has_fault = false;
+    // Its animation can be played, and moves nothing.
+    bool has_unused_target = false;
     for (const Model::AnimationChannel &channel : source.channels) {
       try {
         const std::string target = target_of(channel);
@@ -83,9 +90,10 @@ class AnimationImporter {
       catch (const Fault &fault) {
         warnings_.add_counted(what, 1, std::string("channel left out: ") + fault.what());
         has_fault = true;
+        has_unused_target |= dynamic_cast<const UnusedTarget *>(&fault) != nullptr;
       }
     }
-    if (!animation.nodes.empty() || !animation.values.empty()) {
+    if (!animation.nodes.empty() || !animation.values.empty() || has_unused_target) {
       scene_.animations.push_back(std::move(animation));
     }
     else if (!has_fault) {
@@ -122,6 +130,10 @@ class AnimationImporter {
       import_visibility_channel(sampler, parts->index, animation);
       return;
     }
+    if (parts && parts->collection == "meshes" && parts->path == "weights") {
+      import_mesh_weights_channel(sampler, parts->index, node_places, animation);
+      return;
+    }
     if (parts && parts->collection == "materials" && import_transform_channel(sampler, *parts, animation)) {
       return;
     }
@@ -142,10 +154,38 @@ class AnimationImporter {
     import_value_channel(sampler, *parts, *property, what, animation);
   }
 
+  /** \a index, \a count: of the target in its array of the file, and the size of the array. */
+  [[noreturn]] static void fail_without_target(int index, std::size_t count)
+  {
+    const char *const reason = "its target is not in the scene";
+    // A negative index becomes larger than all sizes.
+    if (std::size_t(index) < count) {
+      throw UnusedTarget("pointer", reason);
+    }
+    throw Fault("pointer", reason);
+  }
+
+  /** The nodes that show the mesh with the mesh's own weights. */
+  void import_mesh_weights_channel(const Model::AnimationSampler &sampler, int mesh,
+                                   std::map<int, std::size_t> &node_places, scene::Animation &animation)
+  {
+    bool has_target = false;
+    for (std::size_t i = 0; i < things_.nodes.size(); i++) {
+      const Model::Node &node = file_.model.nodes[i];
+      if (things_.nodes[i] && node.mesh == mesh && mesh >= 0 && node.weights.empty()) {
+        import_node_channel(sampler, int(i), "weights", node_places, animation);
+        has_target = true;
+      }
+    }
+    if (!has_target) {
+      fail_without_target(mesh, file_.model.meshes.size());
+    }
+  }
+
   void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
   {
     if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
-      throw Fault("pointer", "its target is not in the scene");
+      fail_without_target(node, file_.model.nodes.size());
     }
     AnimatedValue value;
     value.target = things_.nodes[std::size_t(node)];
@@ -171,7 +211,7 @@ class AnimationImporter {
     }
     const auto found = things_.materials.find(parts.index);
     if (found == things_.materials.end()) {
-      throw Fault("pointer", "its target is not in the scene");
+      fail_without_target(parts.index, file_.model.materials.size());
     }
     AnimatedValue value;
     value.target = found->second;
@@ -201,8 +241,11 @@ class AnimationImporter {
                            std::map<int, std::size_t> &node_places, scene::Animation &animation)
   {
     // The index of a pointer may be any number. A negative one becomes larger than all sizes.
-    if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
+    if (std::size_t(node) >= file_.model.nodes.size()) {
       throw Fault("target", "its node is not in the scene");
+    }
+    if (!things_.nodes[std::size_t(node)]) {
+      throw UnusedTarget("target", "its node is not in the scene");
     }
     const Model::Node &source = file_.model.nodes[std::size_t(node)];
     const auto weight_count = [&] {
@@ -265,7 +308,7 @@ class AnimationImporter {
     const SharedTrack moved = track(sampler, 1, Model::ElementType::Scalar);
     const auto found = things_.lamps.find(parts.index);
     if (found == things_.lamps.end()) {
-      throw Fault("pointer", "its target is not in the scene");
+      fail_without_target(parts.index, file_.model.lights.size());
     }
     const Model::Light &light = file_.model.lights[std::size_t(parts.index)];
     const auto constant = [](double angle) {
@@ -349,7 +392,9 @@ class AnimationImporter {
       }
     }
     if (!has_target) {
-      throw Fault("pointer", "its target is not in the scene");
+      fail_without_target(parts.index, parts.collection == "materials" ? file_.model.materials.size()
+                                       : parts.collection == "lights"  ? file_.model.lights.size()
+                                                                       : file_.model.cameras.size());
     }
   }
 

@@ -412,12 +412,20 @@ std::vector<std::filesystem::path> files_of(const File &file)
   for (const Model::Material &material : file.model.materials) {
     add(material.surface_uri);
   }
+  const auto add_world = [&](const auto &things) {
+    for (const auto &thing : things) {
+      const auto found = thing.extras.find(world_picture_key);
+      const auto *const uri = found == thing.extras.end() ? nullptr : std::get_if<std::string>(&found->second);
+      add(uri == nullptr ? "" : *uri);
+    }
+  };
+  add_world(file.model.scenes);
+  add_world(file.model.nodes);
   return paths;
 }
 
-File load_file(const std::filesystem::path &path, const std::filesystem::path &only_below, Warnings &warnings)
+File load_document(const std::filesystem::path &path, Warnings &warnings)
 {
-  const trace::Span span("read and parse");
   File file;
   file.storage.push_back(read_bytes(path, "file"));
   Bytes &storage = file.storage.back();
@@ -428,8 +436,16 @@ File load_file(const std::filesystem::path &path, const std::filesystem::path &o
     refuse_others(path, bytes);
   }
   const Chunks chunks = is_glb(bytes) ? split_glb(bytes, warnings) : Chunks{bytes, {}};
+  file.binary = chunks.binary;
   file.model = parse_document(chunks.json, warnings);
   file.base.folder = path.parent_path();
+  return file;
+}
+
+File load_file(const std::filesystem::path &path, const std::filesystem::path &only_below, Warnings &warnings)
+{
+  const trace::Span span("read and parse");
+  File file = load_document(path, warnings);
   if (!only_below.empty()) {
     std::error_code error;
     file.base.only_below = std::filesystem::canonical(only_below, error);
@@ -437,7 +453,7 @@ File load_file(const std::filesystem::path &path, const std::filesystem::path &o
       throw Fault("folder '" + only_below.string() + '\'', "does not exist, so that no file can be below it");
     }
   }
-  BufferLoader buffer_loader(file, chunks.binary);
+  BufferLoader buffer_loader(file, file.binary);
   for (const Model::Buffer &buffer : file.model.buffers) {
     buffer_loader.load(buffer);
   }

@@ -30,6 +30,8 @@ struct File {
   /** The bytes of each buffer; empty if an unsupported extension provides them. */
   std::vector<std::span<const unsigned char>> buffers;
   UriBase base;
+  /** The binary chunk of a .glb; empty if there is none. */
+  std::span<const unsigned char> binary;
   /** Memory that `buffers` refers to. A list, because its elements do not move. */
   std::list<std::vector<unsigned char>> storage;
 };
@@ -54,8 +56,10 @@ const auto &element(const Elements &elements, int index, std::string_view what)
  */
 [[nodiscard]] std::filesystem::path path_of_uri(const UriBase &base, const std::string &what, const std::string &uri);
 
-/** The regular files that a document names for buffers, images and surface functions, whether they can be read or not.
- */
+/** An extra of a scene or a node: the colour of a world, or the name of its picture. */
+inline constexpr const char *world_picture_key = "gnomon_world";
+
+/** \see files_named_by */
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const File &file);
 
 /** Largest size of a .glb, which is also the limit for other files. */
@@ -71,6 +75,9 @@ inline constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
  */
 [[nodiscard]] std::vector<unsigned char> bytes_of_uri(const UriBase &base, const std::string &what,
                                                       const std::string &uri, std::uintmax_t size_max = file_size_max);
+
+/** The model of the file, without the bytes of its buffers. \throws Fault; std::bad_alloc */
+[[nodiscard]] File load_document(const std::filesystem::path &path, Warnings &warnings);
 
 /** \a only_below: ImportOptions::only_below. \throws Fault; std::bad_alloc */
 [[nodiscard]] File load_file(const std::filesystem::path &path, const std::filesystem::path &only_below,

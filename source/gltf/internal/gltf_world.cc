@@ -24,14 +24,13 @@ using scene::WorldPicture;
 
 namespace {
 
-constexpr const char *picture_key = "gnomon_world";
 constexpr const char *accessor_key = "gnomon_world_accessor";
 constexpr const char *width_key = "gnomon_world_width";
 constexpr const char *color_key = "gnomon_world_color";
 constexpr const char *strength_key = "gnomon_world_strength";
 constexpr const char *rotation_key = "gnomon_world_rotation";
-constexpr std::array<std::string_view, 6> keys{picture_key, accessor_key, width_key,
-                                               color_key,   strength_key, rotation_key};
+constexpr std::array<std::string_view, 6> keys{world_picture_key, accessor_key, width_key,
+                                               color_key,         strength_key, rotation_key};
 
 constexpr Range index_range{0.0, std::numeric_limits<int>::max()};
 /** Its square exceeds all counts of texels. */
@@ -50,8 +49,8 @@ class WorldImporter {
     if (std::none_of(extras.begin(), extras.end(), [](const auto &extra) { return is_world_extra(extra.first); })) {
       return;
     }
-    if (extras.count(picture_key) == 0 && extras.count(accessor_key) == 0) {
-      warnings_.add(what, std::string("its extras of a world have no effect without ") + picture_key);
+    if (extras.count(world_picture_key) == 0 && extras.count(accessor_key) == 0) {
+      warnings_.add(what, std::string("its extras of a world have no effect without ") + world_picture_key);
     }
     else if (extras_) {
       warnings_.add(what, "its world has no effect, because " + extras_->what() + " has one");
@@ -100,9 +99,9 @@ class WorldImporter {
     world.rotation = extras_->number(rotation_key, world.rotation, range_of<World>("rotation"));
     const std::optional<int> accessor = extras_->whole_if_any(accessor_key, index_range);
     const std::optional<int> width = extras_->whole_if_any(width_key, width_range);
-    const Model::Extra *given = extras_->find(picture_key);
+    const Model::Extra *given = extras_->find(world_picture_key);
     if (given != nullptr && accessor) {
-      extras_->fail(accessor_key, std::to_string(*accessor), std::string("absent beside ") + picture_key);
+      extras_->fail(accessor_key, std::to_string(*accessor), std::string("absent beside ") + world_picture_key);
     }
     if (accessor.has_value() != width.has_value()) {
       extras_->fail(width_key, width ? std::to_string(*width) : "absent",
@@ -115,10 +114,10 @@ class WorldImporter {
       world.picture = usable([&] { return picture_of_file(*uri); });
     }
     else if (std::holds_alternative<std::vector<double>>(*given)) {
-      world.color *= extras_->color(picture_key, world.color, range_of<World>("color"));
+      world.color *= extras_->color(world_picture_key, world.color, range_of<World>("color"));
     }
     else {
-      extras_->fail(picture_key, written(*given), "three numbers or the name of a file");
+      extras_->fail(world_picture_key, written(*given), "three numbers or the name of a file");
     }
     return world;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_write_world.hh"
 
-#include "internal/gltf_model.hh"
+#include "internal/gltf_file.hh"
 #include "internal/gltf_write_uri.hh"
 
 #include <string>
@@ -15,11 +15,11 @@ void add_world_extras(const scene::World &world, const fs::path &folder, Written
 {
   constexpr std::string_view what = "world";
   if (!world.picture) {
-    extras.add("gnomon_world", json_numbers(world.color, what));
+    extras.add(world_picture_key, json_numbers(world.color, what));
   }
   else {
     if (const std::string uri = uri_of_file(world.picture->path, folder); !uri.empty()) {
-      extras.add("gnomon_world", '"' + uri + '"');
+      extras.add(world_picture_key, '"' + uri + '"');
     }
     else {
       extras.add("gnomon_world_accessor",
