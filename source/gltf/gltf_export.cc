@@ -220,7 +220,8 @@ class SceneWriter {
     if (!roots.empty()) {
       json.add("nodes", roots.array());
     }
-    if (scene_.world()) {
+    const bool is_default = scene_.world() == scene_.default_world && scene_.placed_lamps().empty();
+    if (scene_.world() && !is_default) {
       JsonText extras;
       add_world_extras(*scene_.world(), folder_, buffer_, extras);
       json.add("extras", extras.object());

@@ -28,8 +28,9 @@ struct ExportError : std::runtime_error {
  * removed, is written as it stands.
  *
  * Not written: things that no node uses, meshes without triangles, references to removed things, and the camera and
- * lamp that the importer added to a file without one, unless they were edited; animations of properties of area lamps;
- * shear of nodes that an animation moves. A lamp or camera of several nodes is read as one for each node.
+ * lamp that the importer added to a file without one, unless they were edited; the studio of
+ * scene::Scene::default_world; animations of properties of area lamps; shear of nodes that an animation moves. A lamp
+ * or camera of several nodes is read as one for each node.
  *
  * An existing file is replaced only after the new one is complete.
  *

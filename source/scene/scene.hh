@@ -93,6 +93,11 @@ class Scene {
   /** Whether the importer added a camera or a lamp because the file has none. */
   bool is_camera_default = false;
   bool is_lamp_default = false;
+  /**
+   * The studio that a program has set as the world of a file without lamps and world (scene_studio.hh). The exporter
+   * leaves it out, unless the scene has another world or a lamp by now.
+   */
+  std::optional<World> default_world{};
   /** Import warnings. Each names the element and the reason. */
   std::vector<std::string> warnings{};
   /** Those of the warnings that name a limit of the import: the picture lacks something that the file has. */

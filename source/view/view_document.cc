@@ -61,7 +61,8 @@ void Document::use_device(gpu::Device &device)
 scene::Scene Document::completed(scene::Scene scene)
 {
   if (scene.is_lamp_default && !scene.world()) {
-    scene.set_world(scene::studio_world(scene.placed_cameras().front().world_from_camera));
+    scene.default_world = scene::studio_world(scene.placed_cameras().front().world_from_camera);
+    scene.set_world(scene.default_world);
     scene.remove(scene.placed_lamps().front().node);
     scene.is_lamp_default = false;
   }

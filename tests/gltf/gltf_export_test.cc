@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf_export.hh"
 #include "gltf/gltf_check.hh"
+#include "scene_studio.hh"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -517,6 +518,32 @@ TEST(GltfExport, AdditionsOfTheImporterAreNotWritten)
   EXPECT_FALSE(document.contains("cameras"));
   EXPECT_FALSE(document.contains("extensions"));
   expect_round_trip(scene);
+}
+
+TEST(GltfExport, TheStudioThatAProgramSetIsNotWrittenUntilTheSceneHasMore)
+{
+  const TemporaryFolder folder;
+  Scene scene = import(triangle_scene());
+  scene.remove(scene.placed_lamps().front().node);
+  scene.default_world = scene::studio_world(scene.placed_cameras().front().world_from_camera);
+  scene.set_world(scene.default_world);
+  const auto has_world = [&] {
+    gltf::export_gltf(scene, folder.path() / "copy.gltf");
+    return gltf::import_gltf(folder.path() / "copy.gltf").world().has_value();
+  };
+  EXPECT_FALSE(has_world());
+  scene::World darker = *scene.default_world;
+  darker.strength = 0.5F;
+  scene.set_world(darker);
+  EXPECT_TRUE(has_world());
+  // As an undo sets it.
+  scene.set_world(scene.default_world);
+  EXPECT_FALSE(has_world());
+  // A file with a lamp gets no studio.
+  scene::Node node;
+  node.lamp = scene.add(scene::Lamp());
+  scene.add(node);
+  EXPECT_TRUE(has_world());
 }
 
 TEST(GltfExport, EditedAdditionsOfTheImporterAreWritten)
