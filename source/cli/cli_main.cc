@@ -105,6 +105,16 @@ static Status run(int argc, char **argv)
     app.parse(std::move(arguments));
     return status;
   }
+  catch (const CLI::RequiredError &error) {
+    // CLI11 says that a command is required, and not that the given one is unknown.
+    const std::vector<std::string> unknown = app.remaining(true);
+    if (std::string_view(error.what()).find("subcommand") != std::string_view::npos && !unknown.empty()) {
+      print_message("gnomon: there is no command '{}': --help lists those that there are\n", unknown.front());
+      return Status::Usage;
+    }
+    static_cast<void>(app.exit(error));
+    return Status::Usage;
+  }
   catch (const CLI::ParseError &error) {
     // Help and version are not errors.
     return app.exit(error) == 0 ? Status::Done : Status::Usage;

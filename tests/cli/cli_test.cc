@@ -107,6 +107,15 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
   }
 }
 
+TEST_F(CliTest, AnUnknownCommandIsNamed)
+{
+  for (const auto &[arguments, name] : {std::pair("rend x.glb", "rend"), {"bench lunch", "lunch"}}) {
+    const Finished finished = run(arguments);
+    EXPECT_EQ(finished.status, 2) << arguments;
+    EXPECT_NE(finished.err.find("no command '" + std::string(name) + "'"), std::string::npos) << finished.err;
+  }
+}
+
 TEST_F(CliTest, LayersThatThereAreNotAreNamedWithThoseThatThereAre)
 {
   const Finished png = run("render a.glb -o a.png --aov depth");
