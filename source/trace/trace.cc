@@ -29,15 +29,9 @@ Log &log()
 /** Ticks of Clock at start(). 0: nothing is recorded. */
 std::atomic<Clock::rep> start_ticks = 0;
 
-/** Seconds since start(); negative if nothing is recorded. */
-double now()
+double seconds(Clock::rep ticks)
 {
-  const Clock::rep start = start_ticks.load(std::memory_order_relaxed);
-  if (start == 0) {
-    return -1.0;
-  }
-  const Clock::duration passed = Clock::now().time_since_epoch() - Clock::duration(start);
-  return std::chrono::duration<double>(passed).count();
+  return std::chrono::duration<double>(Clock::duration(ticks)).count();
 }
 
 /** Number of this thread. \pre the log is locked */
@@ -70,24 +64,26 @@ double process_seconds()
   return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
-Span::Span(std::string_view name, std::string_view detail) : name_(name), start_s_(now())
+Span::Span(std::string_view name, std::string_view detail) : name_(name)
 {
-  if (start_s_ >= 0.0) {
+  if (start_ticks.load(std::memory_order_relaxed) != 0) {
+    begin_ticks_ = Clock::now().time_since_epoch().count();
     detail_ = detail;
   }
 }
 
 Span::~Span()
 {
-  if (start_s_ < 0.0) {
+  if (begin_ticks_ == 0) {
     return;
   }
-  const double duration_s = now() - start_s_;
+  const Clock::rep end_ticks = Clock::now().time_since_epoch().count();
   try {
     const std::lock_guard lock(log().mutex);
-    // Negative if start() was called meanwhile.
-    if (duration_s >= 0.0) {
-      log().events.push_back({std::string(name_), std::move(detail_), start_s_, duration_s, thread_number()});
+    // Otherwise start() was called meanwhile.
+    if (begin_ticks_ >= start_ticks) {
+      log().events.push_back({std::string(name_), std::move(detail_), seconds(begin_ticks_ - start_ticks),
+                              seconds(end_ticks - begin_ticks_), thread_number()});
     }
   }
   catch (const std::bad_alloc &) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,8 +46,8 @@ class Span {
  private:
   std::string_view name_;
   std::string detail_;
-  /** Negative if spans were not recorded when this one began. */
-  double start_s_ = -1.0;
+  /** Ticks of the steady clock; 0 if spans were not recorded when this one began. */
+  std::int64_t begin_ticks_ = 0;
 };
 
 }  // namespace gnomon::trace

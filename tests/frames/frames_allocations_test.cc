@@ -28,22 +28,23 @@ void *operator new(std::size_t size, std::align_val_t alignment)
   return counted(std::aligned_alloc(align, (size + align - 1) / align * align));
 }
 
-void operator delete(void *memory) noexcept
+// GCC would inline these beside a call of new, and warn that free() does not match it.
+[[gnu::noinline]] void operator delete(void *memory) noexcept
 {
   std::free(memory);
 }
 
-void operator delete(void *memory, std::size_t /*size*/) noexcept
+[[gnu::noinline]] void operator delete(void *memory, std::size_t /*size*/) noexcept
 {
   std::free(memory);
 }
 
-void operator delete(void *memory, std::align_val_t /*alignment*/) noexcept
+[[gnu::noinline]] void operator delete(void *memory, std::align_val_t /*alignment*/) noexcept
 {
   std::free(memory);
 }
 
-void operator delete(void *memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept
+[[gnu::noinline]] void operator delete(void *memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept
 {
   std::free(memory);
 }

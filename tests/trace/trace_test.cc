@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 #include <thread>
 
@@ -25,6 +26,8 @@ TEST(Trace, ASpanThatBeganBeforeTheStartIsNotRecorded)
   {
     const Span span("old");
     start();
+    // Longer than from the first start to the span.
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   for (const Event &event : events()) {
     EXPECT_NE(event.name, "old");

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace gnomon::verify {
 namespace {
@@ -23,11 +24,11 @@ std::vector<StabilityCase> cases_of(const std::string &group)
   return cases;
 }
 
-const StabilityCase &case_named(const std::vector<StabilityCase> &cases, const std::string &name)
+const StabilityCase &case_named(const std::vector<StabilityCase> &cases, std::string_view name)
 {
   const auto found = std::ranges::find(cases, name, &StabilityCase::name);
   if (found == cases.end()) {
-    throw std::runtime_error("no case '" + name + "'");
+    throw std::runtime_error("no case '" + std::string(name) + "'");
   }
   return *found;
 }

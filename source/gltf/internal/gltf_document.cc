@@ -394,6 +394,18 @@ std::string reason_of(simdjson::error_code error)
   return printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
 }
 
+/** Newer versions of simdjson (that of Debian 13) have a code of their own for whole numbers above 64 bits. */
+template <class Code>
+bool is_number_error(Code error)
+{
+  if constexpr (requires { Code::BIGINT_ERROR; }) {
+    if (error == Code::BIGINT_ERROR) {
+      return true;
+    }
+  }
+  return error == Code::NUMBER_ERROR;
+}
+
 /** Allocate the parser's output buffers for a text of this size. They need several times the size of the text. */
 simdjson::error_code allocate(simdjson::dom::parser &parser, std::size_t size)
 {
@@ -438,7 +450,7 @@ Model parse_document(std::span<const unsigned char> json, Warnings &warnings)
   simdjson::error_code error = allocate(parser, text.size());
   error = error == simdjson::SUCCESS ? parse() : error;
   std::string changed;
-  if (error == simdjson::NUMBER_ERROR) {
+  if (is_number_error(error)) {
     changed = with_long_numbers_as_floats(text, document_padding());
     text = std::string_view(changed).substr(0, changed.size() - document_padding());
     error = parse();
