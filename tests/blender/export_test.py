@@ -10,6 +10,7 @@ import unittest
 import unittest.mock
 
 import bpy
+import numpy
 from mathutils import Vector
 
 FOLDER = sys.argv[sys.argv.index('--') + 1]
@@ -78,6 +79,14 @@ class File:
 
     def extras(self, name):
         return self.node(name).get('extras', {})
+
+    def values(self, index):
+        """The elements of an accessor of floats."""
+        accessor = self.json['accessors'][index]
+        view = self.json['bufferViews'][accessor['bufferView']]
+        count = accessor['count'] * int(accessor['type'][-1])
+        path = os.path.join(FOLDER, self.json['buffers'][0]['uri'])
+        return numpy.fromfile(path, numpy.float32, count, offset=view.get('byteOffset', 0)).reshape(accessor['count'], -1)
 
     def light(self, name):
         index = self.node(name)['extensions']['KHR_lights_punctual']['light']
@@ -358,6 +367,21 @@ class Objects(ExportTest):
         file = File()
         for name, has in (('plain', False), ('colored', True)):
             self.assertEqual('COLOR_0' in file.json['meshes'][file.node(name)['mesh']]['primitives'][0]['attributes'], has)
+
+    def test_colours_of_corners(self):
+        stuff = material()
+        tree = stuff.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeVertexColor').outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        box = add_box('box', stuff=stuff)
+        colors = box.data.color_attributes.new('Col', 'FLOAT_COLOR', 'CORNER').data
+        for polygon in box.data.polygons:
+            for corner in polygon.loop_indices:
+                colors[corner].color = (*(0.5 + 0.5 * x for x in polygon.normal), 1)
+        file = File()
+        attributes = file.json['meshes'][0]['primitives'][0]['attributes']
+        normals, found = file.values(attributes['NORMAL']), file.values(attributes['COLOR_0'])[:, :3]
+        expected = 0.5 + 0.5 * normals[:, [0, 2, 1]] * (1, -1, 1)
+        self.assertLess(abs(found - expected).max(), 1e-6)
 
     def test_instances_of_particles_are_written(self):
         box = add_box()

@@ -2,6 +2,7 @@
 """Gnomon in Blender: a render engine, and an extension of the glTF exporter. doc/from-blender.md describes both."""
 
 import copy
+import importlib
 import math
 import os
 import shlex
@@ -114,6 +115,8 @@ class Export:
         self.show_as_rendered()
         self.find_instances()
         self.fill_slots()
+        if bpy.app.version < (3, 5):
+            self.read_colors_by_corner()
         self.choose_options()
         self.report_scene()
         self.world_extras = {}
@@ -248,6 +251,21 @@ class Export:
         self.nothing = self.temporary.add_material() if meshes else None
         for mesh in meshes:
             self.temporary.fill_slots(mesh, self.nothing)
+
+    def read_colors_by_corner(self):
+        """The exporter of 3.4 takes the numbers of vertices for those of corners."""
+        creator = importlib.import_module('io_scene_gltf2.blender.exp.gltf2_blender_gather_primitives_extract').PrimitiveCreator
+        name = '_PrimitiveCreator__get_color_attribute'
+        read = getattr(creator, name)
+
+        def read_by_corner(own, attribute):
+            vertices = own.dots['vertex_index'].copy()
+            if attribute['blender_domain'] == 'CORNER':
+                own.dots['vertex_index'] = numpy.arange(len(vertices))
+            read(own, attribute)
+            own.dots['vertex_index'] = vertices
+
+        self.temporary.set(creator, name, read_by_corner)
 
     def report_scene(self):
         scene, report = self.scene, self.report
