@@ -534,6 +534,20 @@ class Objects(ExportTest):
 
 
 class Materials(ExportTest):
+    def test_images_that_no_uv_set_places_are_named(self):
+        for kind, projection, name in (('UV', 'FLAT', None), ('Object', 'FLAT', 'Object'), ('UV', 'BOX', 'Box')):
+            stuff = material(f'{kind} {projection}')
+            tree = stuff.node_tree
+            image = tree.nodes.new('ShaderNodeTexImage')
+            image.image, image.projection = bpy.data.images.new(f'image {name}', 4, 4), projection
+            tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs[kind], image.inputs['Vector'])
+            tree.links.new(image.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+            add_box(stuff.name, stuff=stuff)
+        report = File().report
+        self.assertNotIn("material 'UV FLAT'", report)
+        for name in ('Object', 'Box'):
+            self.assertIn(f"the image 'image {name}' is drawn by the uv set, not by {name}", report)
+
     def test_closed_glass_has_the_mean_chord_as_its_thickness(self):
         glass = material('glass', Transmission=1.0)
         bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.5)

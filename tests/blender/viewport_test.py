@@ -185,6 +185,14 @@ def steps():
         tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
         tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Roughness'])
 
+    def mapped():
+        tree = cube.data.materials[0].node_tree
+        mapping = tree.nodes.new('ShaderNodeMapping')
+        mapping.inputs['Scale'].default_value = 2, 3, 1
+        tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], mapping.inputs['Vector'])
+        node = next(node for node in tree.nodes if node.type == 'TEX_IMAGE')
+        tree.links.new(mapping.outputs[0], node.inputs['Vector'])
+
     def painted():
         image = bpy.data.images['noise']
         image.pixels = 1 - numpy.array(image.pixels)
@@ -206,7 +214,7 @@ def steps():
     def removed():
         bpy.data.objects.remove(bpy.data.objects['Cube'])
 
-    for change in (moved, colored, added, modified, instanced, edited, textured, painted, in_another_frame, strengthened, kind_changed, set_samples,
+    for change in (moved, colored, added, modified, instanced, edited, textured, mapped, painted, in_another_frame, strengthened, kind_changed, set_samples,
                    orthographic, shifted, blurred, undone, hidden, removed):
         before, begun = picture, time.monotonic()
         change()
@@ -225,10 +233,16 @@ def steps():
     tree.links.new(tree.nodes.new('ShaderNodeValue').outputs[0], principled.inputs['Clearcoat'])
     image = tree.nodes.new('ShaderNodeTexImage')
     image.image = bpy.data.images['noise']
-    tree.links.new(tree.nodes.new('ShaderNodeMapping').outputs[0], image.inputs['Vector'])
+    mapping = tree.nodes.new('ShaderNodeMapping')
+    mapping.inputs['Scale'].default_value = 2, 3, 1
+    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], mapping.inputs['Vector'])
+    tree.links.new(mapping.outputs[0], image.inputs['Vector'])
     tree.links.new(image.outputs['Color'], principled.inputs['Base Color'])
+    other = tree.nodes.new('ShaderNodeTexImage')
+    other.image = image.image
+    tree.links.new(other.outputs['Color'], principled.inputs['Emission'])
     picture = yield from check(picture)
-    for text in ("'Roughness' comes from the nodes Noise Texture", "what 'Clearcoat' is linked to", "the mapping of 'Base Color'"):
+    for text in ("'Roughness' comes from the nodes Noise Texture", "what 'Clearcoat' is linked to", "places its images all as 'noise'"):
         assert any(text in each for each in viewport.remarks()), (text, viewport.remarks())
     assert len(viewport.remarks()) == 3, viewport.remarks()
 
