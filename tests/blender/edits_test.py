@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Edits by Blender's operators, in a window: blender --factory-startup -P edits_test.py -- LIBRARY FOLDER COUNT
 
-LIBRARY is gl_state.cc. Each call of the add-on leaves OpenGL's state as Blender's own drawing leaves it. After each hundred edits, the picture is that
-of a scene that is collected anew, bit for bit. The memory of the process does not grow with the number of edits.
+LIBRARY is gl_state.cc. Each call of the add-on leaves OpenGL's state as Blender's own drawing leaves it. After each hundred edits,
+the picture is that of a scene that is collected anew, bit for bit. The memory of the process does not grow with the number of edits.
 """
 
 import collections
@@ -106,7 +106,8 @@ class Edits:
     def choose(self, *kinds):
         """Selects one object and returns it."""
         object_mode()
-        there = [each for each in bpy.context.view_layer.objects if (not kinds or each.type in kinds) and each.type != 'CAMERA' and each.visible_get()]
+        there = [each for each in bpy.context.view_layer.objects
+                 if (not kinds or each.type in kinds) and each.type != 'CAMERA' and each.visible_get()]
         if not there:
             return None
         do(bpy.ops.object.select_all, action='DESELECT')
@@ -254,7 +255,6 @@ def steps():
             memory.append(memory_mib())
             print(f"after {i + 1} edits: {memory[-1]:.0f} MiB, {time.process_time():.0f} s of CPU time", flush=True)
     # Playback of all frames.
-    print(time.process_time())
     thing = bpy.data.objects['Cube']
     for frame in (1, 240):
         thing.location.x = frame / 100
@@ -268,7 +268,7 @@ def steps():
     do(bpy.ops.screen.animation_cancel, undo=False, restore_frame=False)
     yield
     yield from check()
-    print(dict(done), dict(calls), time.process_time(), flush=True)
+    print(dict(done), dict(calls), flush=True)
     assert all(name == 'draw' and item.startswith(DRAWING) for name, item in changed), f"changed: {dict(changed)}"
     assert calls['draw'] > COUNT / 2 and calls['update'] > COUNT / 4, calls
     half = len(memory) // 2

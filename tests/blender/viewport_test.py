@@ -144,8 +144,8 @@ def steps():
     def removed():
         bpy.data.objects.remove(bpy.data.objects['Cube'])
 
-    for change in (moved, colored, added, modified, instanced, edited, textured, mapped, painted, in_another_frame, strengthened, kind_changed, set_samples,
-                   orthographic, shifted, blurred, undone, hidden, removed):
+    for change in (moved, colored, added, modified, instanced, edited, textured, mapped, painted, in_another_frame, strengthened, kind_changed,
+                   set_samples, orthographic, shifted, blurred, undone, hidden, removed):
         before, begun = picture, time.monotonic()
         change()
         picture = yield from check(before)
