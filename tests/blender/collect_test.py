@@ -20,6 +20,25 @@ RMSE_MAX = 5e-4
 LAYERS = ['combined', 'depth', 'normal', 'albedo', 'roughness']
 
 
+def place_image():
+    """An image that is not square on the factory cube, by another uv set and a mapping."""
+    mesh = bpy.data.objects['Cube'].data
+    for corner in mesh.uv_layers.new(name='other').data:
+        corner.uv = 1.5 * corner.uv.yx
+    image = bpy.data.images.new('squares', 64, 32)
+    texels = numpy.kron(numpy.random.default_rng(1).random((4, 4, 4)), numpy.ones((8, 16, 1)))
+    image.pixels = texels.reshape(-1)
+    image.pack()
+    tree = mesh.materials[0].node_tree
+    node, mapping, uv_map = (tree.nodes.new(f'ShaderNode{kind}') for kind in ('TexImage', 'Mapping', 'UVMap'))
+    node.image, uv_map.uv_map = image, 'other'
+    mapping.inputs['Location'].default_value, mapping.inputs['Scale'].default_value = (0.1, 0.3, 0), (2, 0.7, 1)
+    mapping.inputs['Rotation'].default_value[2] = 0.4
+    tree.links.new(uv_map.outputs[0], mapping.inputs['Vector'])
+    tree.links.new(mapping.outputs[0], node.inputs['Vector'])
+    tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+
+
 def encoded(picture):
     linear = numpy.clip(picture[:, :, :3], 0, 1)
     return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
@@ -29,6 +48,8 @@ def layers_of(device, scene, camera):
     return gnomon.Renderer.offline(device, scene, SIZE, 16, background='world').layers(LAYERS, camera)
 
 
+if not bpy.data.filepath:
+    place_image()
 device = gnomon.Device()
 depsgraph = bpy.context.evaluated_depsgraph_get()
 with tempfile.TemporaryDirectory() as folder:

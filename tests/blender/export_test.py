@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 """What the add-on writes into files. Run in Blender by check_blender: blender -b --factory-startup -P export_test.py -- FOLDER"""
 
+import importlib
 import json
 import math
 import os
 import sys
 import unittest
+import unittest.mock
 
 import bpy
+import numpy
 from mathutils import Vector
 
 FOLDER = sys.argv[sys.argv.index('--') + 1]
@@ -76,6 +79,14 @@ class File:
 
     def extras(self, name):
         return self.node(name).get('extras', {})
+
+    def values(self, index):
+        """The elements of an accessor of floats."""
+        accessor = self.json['accessors'][index]
+        view = self.json['bufferViews'][accessor['bufferView']]
+        count = accessor['count'] * int(accessor['type'][-1])
+        path = os.path.join(FOLDER, self.json['buffers'][0]['uri'])
+        return numpy.fromfile(path, numpy.float32, count, offset=view.get('byteOffset', 0)).reshape(accessor['count'], -1)
 
     def light(self, name):
         index = self.node(name)['extensions']['KHR_lights_punctual']['light']
@@ -276,17 +287,76 @@ class Objects(ExportTest):
         self.assertEqual(file.names(), {'a', 'child', 'instance', 'e'})
         self.assertEqual(sum('mesh' in node for node in file.json['nodes']), 3)
 
-    def test_modifiers_are_written_unless_there_are_shape_keys(self):
-        box = add_box()
-        box.modifiers.new('subdivision', 'SUBSURF').levels = 1
-        count = lambda file: file.json['accessors'][file.json['meshes'][0]['primitives'][0]['indices']]['count']
-        self.assertEqual(count(File()), 6 * 4 * 6)
+    def test_modifiers_are_written_as_rendered_except_with_shape_keys(self):
+        subdivision = add_box().modifiers.new('subdivision', 'SUBSURF')
+        subdivision.levels, subdivision.render_levels, subdivision.show_viewport = 1, 2, False
+
+        def count(file, name):
+            primitive = file.json['meshes'][file.node(name)['mesh']]['primitives'][0]
+            return file.json['accessors'][primitive['indices']]['count']
+
+        self.assertEqual(count(File(), 'box'), 6 * 16 * 6)
         keyed = add_box('keyed')
         keyed.shape_key_add(name='base')
         keyed.shape_key_add(name='other')
         file = File()
-        self.assertIn("modifiers: those of box are not written", file.report)
-        self.assertEqual(len(file.json['meshes'][1]['primitives'][0]['targets']), 1)
+        self.assertEqual(count(file, 'box'), 6 * 16 * 6)
+        self.assertEqual({mesh['name'] for mesh in file.json['meshes']}, {'box', 'keyed'})
+        self.assertEqual(len(file.json['meshes'][file.node('keyed')['mesh']]['primitives'][0]['targets']), 1)
+        self.assertNotIn('modifiers', file.report)
+        self.assertEqual((subdivision.levels, subdivision.show_viewport, bpy.data.objects['box'].data.name), (1, False, 'box'))
+        keyed.modifiers.new('subdivision', 'SUBSURF')
+        file = File()
+        self.assertEqual(count(file, 'keyed'), 6 * 6)
+        self.assertIn("object 'keyed': its modifiers are not written", file.report)
+
+    def test_the_pose_of_bones_without_an_action_is_written(self):
+        armature = bpy.data.armatures.new('rig')
+        rig = bpy.context.view_layer.objects.active = add('rig', armature)
+        bpy.ops.object.mode_set(mode='EDIT')
+        armature.edit_bones.new('bone').tail = (0, 0, 1)
+        bpy.ops.object.mode_set(mode='OBJECT')
+        box = add_box('skin')
+        box.vertex_groups.new(name='bone').add(range(8), 1.0, 'REPLACE')
+        box.modifiers.new('rig', 'ARMATURE').object = rig
+        box.parent = rig
+        rig.pose.bones['bone'].rotation_mode = 'XYZ'
+        rig.pose.bones['bone'].rotation_euler.y = 0.8
+        self.scene.frame_set(7)
+        turn = File().node('bone')['rotation']
+        self.assertAlmostEqual(2 * math.acos(abs(turn[3])), 0.8, 5)
+        self.assertEqual(self.scene.frame_current, 7)
+
+    def test_an_empty_slot_beside_a_node_of_a_uv_map(self):
+        stuff = material(Base_Color=(1, 0, 0, 1))
+        tree = stuff.node_tree
+        image = tree.nodes.new('ShaderNodeTexImage')
+        image.image = bpy.data.images.new('image', 4, 4)
+        uv_map = tree.nodes.new('ShaderNodeUVMap')
+        uv_map.uv_map = 'UVMap'
+        tree.links.new(uv_map.outputs[0], image.inputs['Vector'])
+        tree.links.new(image.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        add_box('textured', stuff=stuff).data.uv_layers.new(name='UVMap')
+        mesh = add_box('plain').data
+        mesh.materials.append(None)
+        file = File()
+        self.assertNotIn('material', file.json['meshes'][file.node('plain')['mesh']]['primitives'][0])
+        self.assertEqual(([each['name'] for each in file.json['materials']], list(mesh.materials)), (['stuff'], [None]))
+
+    def test_an_export_that_fails_leaves_the_scene_as_it_was(self):
+        subdivision = add_box().modifiers.new('subdivision', 'SUBSURF')
+        bpy.data.objects['box'].data.materials.append(None)
+        add('meta', bpy.data.metaballs.new('meta')).data.elements.new()
+        keyed = add_box('keyed')
+        keyed.shape_key_add(name='base')
+        before = data_blocks()
+        gather = importlib.import_module('io_scene_gltf2.blender.exp.gltf2_blender_gather')
+        with unittest.mock.patch.object(gather, 'gather_gltf2', side_effect=ValueError):
+            with self.assertRaises(RuntimeError):
+                File()
+        bpy.ops.wm.save_as_mainfile(filepath=f"{FOLDER}/failed.blend", copy=True)
+        self.assertEqual(data_blocks(), before)
+        self.assertEqual((subdivision.levels, bpy.data.objects['box'].data.name), (1, 'box'))
 
     def test_colours_of_vertices_are_written_for_materials_that_read_them(self):
         plain, colored = material('plain'), material('colored')
@@ -297,6 +367,21 @@ class Objects(ExportTest):
         file = File()
         for name, has in (('plain', False), ('colored', True)):
             self.assertEqual('COLOR_0' in file.json['meshes'][file.node(name)['mesh']]['primitives'][0]['attributes'], has)
+
+    def test_colours_of_corners(self):
+        stuff = material()
+        tree = stuff.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeVertexColor').outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        box = add_box('box', stuff=stuff)
+        colors = box.data.color_attributes.new('Col', 'FLOAT_COLOR', 'CORNER').data
+        for polygon in box.data.polygons:
+            for corner in polygon.loop_indices:
+                colors[corner].color = (*(0.5 + 0.5 * x for x in polygon.normal), 1)
+        file = File()
+        attributes = file.json['meshes'][0]['primitives'][0]['attributes']
+        normals, found = file.values(attributes['NORMAL']), file.values(attributes['COLOR_0'])[:, :3]
+        expected = 0.5 + 0.5 * normals[:, [0, 2, 1]] * (1, -1, 1)
+        self.assertLess(abs(found - expected).max(), 1e-6)
 
     def test_instances_of_particles_are_written(self):
         box = add_box()
@@ -315,10 +400,14 @@ class Objects(ExportTest):
             for a, b in zip(found, places):
                 self.assertNear(a, b, 4)
             self.assertNotIn("instances", file.report)
+        # What is not drawn itself, which a viewport shows a tenth of.
         box.hide_render = True
+        system.display_percentage = 10
         file = File()
-        self.assertIn("object 'emitter': 12 of its instances are not written", file.report)
-        self.assertEqual(file.names(), {'emitter'})
+        self.assertEqual(file.names(), {'emitter', 'emitter box'})
+        self.assertEqual(len([node for node in file.json['nodes'] if node['name'] == 'emitter box']), 12)
+        self.assertEqual([mesh['name'] for mesh in file.json['meshes']], ['emitter', 'box'])
+        self.assertEqual(system.display_percentage, 10)
 
     def test_instances_of_geometry_nodes(self):
         box = add_box()
@@ -331,13 +420,49 @@ class Objects(ExportTest):
                 source.inputs['Object'].default_value = box
                 source.inputs['As Instance'].default_value = True
             tree.links.new(grid.outputs['Mesh'], instances.inputs['Points'])
-            tree.links.new(source.outputs['Geometry' if name == 'of_objects' else 'Mesh'], instances.inputs['Instance'])
+            geometry = source.outputs['Geometry' if name == 'of_objects' else 'Mesh']
+            if name == 'of_meshes':
+                painted = tree.nodes.new('GeometryNodeSetMaterial')
+                painted.inputs['Material'].default_value = material('paint')
+                tree.links.new(geometry, painted.inputs[0])
+                geometry = painted.outputs[0]
+            tree.links.new(geometry, instances.inputs['Instance'])
             tree.links.new(instances.outputs['Instances'], output.inputs[0])
             add_box(name).modifiers.new('nodes', 'NODES').node_group = tree
         file = File()
-        self.assertEqual([node['name'] for node in file.json['nodes'] if 'matrix' in node], ['of_objects box'] * 9)
-        self.assertIn("object 'of_meshes': 9 of its instances are not written", file.report)
-        self.assertNotIn("'of_objects'", file.report)
+        nodes = [node for node in file.json['nodes'] if 'matrix' in node]
+        self.assertEqual([node['name'] for node in nodes], ['of_objects box'] * 9 + ['of_meshes'] * 9)
+        self.assertEqual({node['mesh'] for node in nodes[:9]}, {file.node('box')['mesh']})
+        found = {node['mesh'] for node in nodes[9:]}
+        self.assertEqual(len(found), 1)
+        stuff = file.json['meshes'][found.pop()]['primitives'][0]['material']
+        self.assertEqual(file.json['materials'][stuff]['name'], 'paint')
+        self.assertNotIn("object", file.report)
+        collection = bpy.data.collections.new('many')
+        collection.objects.link(bpy.data.objects['of_meshes'])
+        instance = add('instance', None, (0, 0, 7))
+        instance.instance_type, instance.instance_collection = 'COLLECTION', collection
+        self.assertEqual([node['matrix'][13] for node in File().json['nodes'] if node['name'] == 'instance of_meshes'], [7] * 9)
+
+    def test_metaballs_curves_and_texts_are_written_once(self):
+        meta = add('meta', bpy.data.metaballs.new('meta'), (1, 2, 3))
+        meta.data.elements.new()
+        meta.data.materials.append(material('jelly'))
+        curve = bpy.data.curves.new('curve', 'CURVE')
+        curve.bevel_depth = 0.1
+        curve.splines.new('POLY').points.add(1)
+        curve.splines[0].points[1].co = (1, 1, 1, 1)
+        add('curve', curve)
+        text = bpy.data.curves.new('text', 'FONT')
+        text.body = 'a'
+        add('text', text)
+        file = File()
+        self.assertEqual(sorted(node['name'] for node in file.json['nodes']), ['curve', 'meta', 'text'])
+        self.assertTrue(all('mesh' in node for node in file.json['nodes']))
+        self.assertEqual(file.node('meta')['matrix'][12:15], [1, 3, -2])
+        stuff = file.json['meshes'][file.node('meta')['mesh']]['primitives'][0]['material']
+        self.assertEqual(file.json['materials'][stuff]['name'], 'jelly')
+        self.assertNotIn("object", file.report)
 
     def test_cameras(self):
         for name in ('first', 'second', 'third'):
@@ -409,6 +534,20 @@ class Objects(ExportTest):
 
 
 class Materials(ExportTest):
+    def test_images_that_no_uv_set_places_are_named(self):
+        for kind, projection, name in (('UV', 'FLAT', None), ('Object', 'FLAT', 'Object'), ('UV', 'BOX', 'Box')):
+            stuff = material(f'{kind} {projection}')
+            tree = stuff.node_tree
+            image = tree.nodes.new('ShaderNodeTexImage')
+            image.image, image.projection = bpy.data.images.new(f'image {name}', 4, 4), projection
+            tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs[kind], image.inputs['Vector'])
+            tree.links.new(image.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+            add_box(stuff.name, stuff=stuff)
+        report = File().report
+        self.assertNotIn("material 'UV FLAT'", report)
+        for name in ('Object', 'Box'):
+            self.assertIn(f"the image 'image {name}' is drawn by the uv set, not by {name}", report)
+
     def test_closed_glass_has_the_mean_chord_as_its_thickness(self):
         glass = material('glass', Transmission=1.0)
         bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.5)

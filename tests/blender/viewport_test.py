@@ -4,87 +4,17 @@
 After edits of all kinds, the complete picture is that of a scene that is collected anew, bit for bit, and Blender's window shows it.
 """
 
-import importlib
 import os
 import sys
 import time
-import traceback
 
 import bpy
 import numpy
 
+sys.path.insert(0, os.path.dirname(__file__))
+from window import check, region, run, space, viewport
+
 FOLDER = sys.argv[-1]
-SECONDS_MAX = 600
-bpy.context.preferences.view.show_splash = False
-bpy.ops.preferences.addon_enable(module='render_gnomon')
-collect, mirror, settings, viewport = (importlib.import_module(f'render_gnomon.{name}') for name in ('collect', 'mirror', 'settings', 'viewport'))
-
-
-def area():
-    return next(each for each in bpy.context.window.screen.areas if each.type == 'VIEW_3D')
-
-
-def region():
-    return next(each for each in area().regions if each.type == 'WINDOW')
-
-
-def space():
-    return area().spaces.active
-
-
-def complete(old=None):
-    """Waits for a complete picture that is another than `old`. Yields until there is one."""
-    while True:
-        shown = viewport.Viewport.all[0] if viewport.Viewport.all else None
-        if shown is not None and shown.painter.error is not None:
-            raise RuntimeError(shown.painter.error)
-        picture = shown and shown.painter.picture
-        if picture and picture[1] and picture is not old and picture is shown.shown and \
-                shown.painter.shown_count == shown.painter.wanted_count:
-            return picture
-        yield
-
-
-def expected():
-    """The picture of a renderer and a scene that are made anew."""
-    shown = viewport.Viewport.all[0]
-    collected = collect.Collector().content(bpy.context.evaluated_depsgraph_get(), space())
-    collected.world = shown.content.world
-    fresh = mirror.Mirror(settings.gnomon)
-    fresh.show(collected)
-    view = viewport.View(region(), space().region_3d, bpy.context.scene.camera)
-    painter = Fresh(fresh, view, shown.settings)
-    return painter.picture
-
-
-class Fresh:
-    """Draws on a thread of its own: Blender has a context on this one."""
-
-    def __init__(self, shown, view, values):
-        import threading
-        self.picture = None
-        thread = threading.Thread(target=self.draw, args=(shown, view, values))
-        thread.start()
-        thread.join()
-
-    def draw(self, shown, view, values):
-        gnomon = settings.gnomon
-        kind = gnomon.CameraKind.PERSPECTIVE if view.is_perspective else gnomon.CameraKind.ORTHOGRAPHIC
-        shown.camera.edit(kind=kind, **view.camera)
-        shown.eye.parent_from_node = view.matrix
-        device = gnomon.Device()
-        renderer = gnomon.Renderer(device, shown.scene, view.size, **values)
-        self.picture = renderer.render(shown.eye)
-        del renderer, device
-
-
-def check(old=None):
-    picture = yield from complete(old)
-    own = expected()
-    assert picture[0].shape == own.shape, (picture[0].shape, own.shape)
-    error = abs(picture[0] - own).max()
-    assert error == 0, f"the picture differs by {error}"
-    return picture
 
 
 def screenshot():
@@ -185,6 +115,14 @@ def steps():
         tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
         tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Roughness'])
 
+    def mapped():
+        tree = cube.data.materials[0].node_tree
+        mapping = tree.nodes.new('ShaderNodeMapping')
+        mapping.inputs['Scale'].default_value = 2, 3, 1
+        tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], mapping.inputs['Vector'])
+        node = next(node for node in tree.nodes if node.type == 'TEX_IMAGE')
+        tree.links.new(mapping.outputs[0], node.inputs['Vector'])
+
     def painted():
         image = bpy.data.images['noise']
         image.pixels = 1 - numpy.array(image.pixels)
@@ -206,8 +144,8 @@ def steps():
     def removed():
         bpy.data.objects.remove(bpy.data.objects['Cube'])
 
-    for change in (moved, colored, added, modified, instanced, edited, textured, painted, in_another_frame, strengthened, kind_changed, set_samples,
-                   orthographic, shifted, blurred, undone, hidden, removed):
+    for change in (moved, colored, added, modified, instanced, edited, textured, mapped, painted, in_another_frame, strengthened, kind_changed,
+                   set_samples, orthographic, shifted, blurred, undone, hidden, removed):
         before, begun = picture, time.monotonic()
         change()
         picture = yield from check(before)
@@ -225,10 +163,16 @@ def steps():
     tree.links.new(tree.nodes.new('ShaderNodeValue').outputs[0], principled.inputs['Clearcoat'])
     image = tree.nodes.new('ShaderNodeTexImage')
     image.image = bpy.data.images['noise']
-    tree.links.new(tree.nodes.new('ShaderNodeMapping').outputs[0], image.inputs['Vector'])
+    mapping = tree.nodes.new('ShaderNodeMapping')
+    mapping.inputs['Scale'].default_value = 2, 3, 1
+    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['UV'], mapping.inputs['Vector'])
+    tree.links.new(mapping.outputs[0], image.inputs['Vector'])
     tree.links.new(image.outputs['Color'], principled.inputs['Base Color'])
+    other = tree.nodes.new('ShaderNodeTexImage')
+    other.image = image.image
+    tree.links.new(other.outputs['Color'], principled.inputs['Emission'])
     picture = yield from check(picture)
-    for text in ("'Roughness' comes from the nodes Noise Texture", "what 'Clearcoat' is linked to", "the mapping of 'Base Color'"):
+    for text in ("'Roughness' comes from the nodes Noise Texture", "what 'Clearcoat' is linked to", "places its images all as 'noise'"):
         assert any(text in each for each in viewport.remarks()), (text, viewport.remarks())
     assert len(viewport.remarks()) == 3, viewport.remarks()
 
@@ -247,24 +191,4 @@ def steps():
     assert not viewport.Viewport.all
 
 
-running = steps()
-start = time.monotonic()
-
-
-def step():
-    try:
-        next(running)
-        assert time.monotonic() - start < SECONDS_MAX, "the time is over"
-        return 0.05
-    except StopIteration:
-        print("viewport: OK", flush=True)
-    except Exception:
-        traceback.print_exc()
-    viewport.end_all()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    bpy.ops.wm.quit_blender()
-    return None
-
-
-bpy.app.timers.register(step, first_interval=1.0)
+run(steps, 'viewport', 600)

@@ -2,6 +2,7 @@
 """Gnomon in Blender: a render engine, and an extension of the glTF exporter. doc/from-blender.md describes both."""
 
 import copy
+import importlib
 import math
 import os
 import shlex
@@ -10,7 +11,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import cameras, closed, engine, lamps, materials, viewport, world
+from . import cameras, closed, engine, lamps, materials, temporary, viewport, world
 
 bl_info = {
     "name": "Gnomon",
@@ -24,8 +25,12 @@ bl_info = {
 
 VIEW_TRANSFORMS = {'Standard': 'standard', 'Raw': 'raw', 'AgX': 'agx', 'Khronos PBR Neutral': 'pbr-neutral'}
 # Kinds of objects that have no meaning in glTF.
-UNWRITTEN_OBJECTS = {'META', 'VOLUME', 'CURVES', 'POINTCLOUD', 'GPENCIL', 'GREASEPENCIL', 'LIGHT_PROBE'}
+UNWRITTEN_OBJECTS = {'VOLUME', 'CURVES', 'POINTCLOUD', 'GPENCIL', 'GREASEPENCIL', 'LIGHT_PROBE'}
 DRAWN_OBJECTS = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'LIGHT'}
+# Of these, geometry nodes and metaballs aside, the exporter writes the surface.
+WRITTEN_SURFACES = {'MESH', 'CURVE', 'SURFACE', 'FONT'}
+# Entries of persistent_id that are not used.
+NO_ID = 2**31 - 1
 
 
 class Report:
@@ -100,6 +105,18 @@ class Export:
         self.path = settings['gltf_filepath']
         self.rendered = rendered_objects(bpy.context.view_layer)
         self.volumes = {}
+        self.temporary = temporary.Temporary()
+        # Names of meshes that stand for others, with the names of those.
+        self.names = {}
+        # (name of the node, name of the object with the mesh, matrix)
+        self.instances = []
+        # Names of the objects of which instances take the mesh, and which are not drawn themselves.
+        self.sources = set()
+        self.show_as_rendered()
+        self.find_instances()
+        self.fill_slots()
+        if bpy.app.version < (3, 5):
+            self.read_colors_by_corner()
         self.choose_options()
         self.report_scene()
         self.world_extras = {}
@@ -118,10 +135,11 @@ class Export:
         settings['gltf_lighting_mode'] = 'SPEC'
         meshes = [thing for thing in self.scene.objects if thing.type == 'MESH' and thing.name_full in self.rendered]
         if any(thing.data.shape_keys for thing in meshes):
-            if not settings['gltf_apply']:
-                modified = [thing.name for thing in meshes if any(m.type != 'ARMATURE' and m.show_render for m in thing.modifiers)]
-                if modified:
-                    self.report.add('modifiers', f"those of {', '.join(modified)} are not written, because shape keys could not be written then")
+            # The exporter would apply the shape keys, too.
+            settings['gltf_apply'] = False
+            for thing in meshes:
+                if any(m.type not in ('ARMATURE', 'PARTICLE_SYSTEM') and m.show_render for m in thing.modifiers):
+                    self.apply_modifiers(thing)
         else:
             settings['gltf_apply'] = True
         if any(track.strips for thing in self.scene.objects if thing.animation_data for track in thing.animation_data.nla_tracks):
@@ -131,6 +149,123 @@ class Export:
             settings['gltf_export_anim_single_armature'] = False
             # Blender 4.0 and later have this option.
             settings['gltf_animation_mode'] = 'ACTIVE_ACTIONS'
+
+        # Of armatures that no action moves, the pose is written. Only the start and the end of an export look at the frame.
+        self.temporary.set_item(settings, 'gltf_current_frame', True)
+        # Blender 3.6 and later.
+        settings['gltf_rest_position_armature'] = False
+
+    def show_as_rendered(self):
+        """The exporter writes what a viewport shows."""
+        change = self.temporary.set
+        for thing in self.scene.objects:
+            for modifier in thing.modifiers:
+                change(modifier, 'show_viewport', modifier.show_render)
+                if modifier.type in ('SUBSURF', 'MULTIRES'):
+                    change(modifier, 'levels', modifier.render_levels)
+            for system in thing.particle_systems:
+                change(system.settings, 'display_percentage', 100)
+                change(system.settings, 'child_nbr', system.settings.rendered_child_count)
+            data = thing.data
+            if thing.type in ('CURVE', 'SURFACE', 'FONT'):
+                for axis in 'uv':
+                    change(data, f'resolution_{axis}', getattr(data, f'render_resolution_{axis}') or getattr(data, f'resolution_{axis}'))
+            if thing.type == 'META':
+                change(data, 'resolution', data.render_resolution)
+
+    def find_instances(self):
+        """Instances of particles and geometry nodes, and metaballs, all of which the exporter leaves out."""
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        copies, unwritten = {}, {}
+        for instance in depsgraph.object_instances:
+            if not instance.is_instance or instance.parent is None:
+                continue
+            parent, thing = instance.parent.original, instance.object
+            own = thing.original
+            if parent.name_full not in self.rendered:
+                continue
+            # The exporter writes what collections, vertices and faces repeat, without the meshes that nodes make.
+            is_made = own.type == 'MESH' and thing.data.as_pointer() != own.evaluated_get(depsgraph).data.as_pointer()
+            if parent.instance_type != 'NONE' and not is_made:
+                continue
+            # The surface of a curve is an instance of one number.
+            is_surface = own == parent and instance.persistent_id[1] == NO_ID
+            if is_surface and own.type in WRITTEN_SURFACES:
+                continue
+            if own != parent and own.type == 'MESH' and not is_made and own.name_full in self.rendered and own.find_armature() is None:
+                source = own.name
+            elif thing.type in ('MESH', 'META', 'CURVE', 'SURFACE', 'FONT'):
+                key = own.name_full, thing.data.as_pointer()
+                if key not in copies:
+                    copies[key] = self.copy_of(thing, depsgraph)
+                source = copies[key]
+            else:
+                source = None
+            if source is None:
+                unwritten[parent.name] = unwritten.get(parent.name, 0) + 1
+                continue
+            name = parent.name if own == parent else f"{parent.name} {own.name}"
+            self.instances.append((name, source, instance.matrix_world.copy()))
+        for name, count in unwritten.items():
+            self.report.add(f"object '{name}'", f"{count} of its instances are not written, because what they repeat has no surface")
+
+    def copy_of(self, thing, depsgraph):
+        """The name of an object for the time of the export that has the mesh of an evaluated object; None if that has no triangles."""
+        mesh = bpy.data.meshes.new_from_object(thing)
+        if mesh is None:
+            return None
+        self.temporary.add_mesh(mesh)
+        if not mesh.polygons:
+            return None
+        for i, slot in enumerate(thing.material_slots):
+            material = slot.material and slot.material.original
+            if i < len(mesh.materials):
+                mesh.materials[i] = material
+            else:
+                mesh.materials.append(material)
+        self.names[mesh.name] = thing.data.name
+        added = self.temporary.add_object(thing.name, mesh, self.scene.collection)
+        self.rendered.add(added.name_full)
+        self.sources.add(added.name)
+        return added.name
+
+    def apply_modifiers(self, thing):
+        """Gives an object its modified mesh for the time of the export. Bones go on to move it."""
+        if thing.data.shape_keys:
+            self.report.add(f"object '{thing.name}'", "its modifiers are not written, because its shape keys could not be written then")
+            return
+        is_shown = [(modifier, modifier.show_viewport) for modifier in thing.modifiers if modifier.type == 'ARMATURE']
+        for modifier, _ in is_shown:
+            modifier.show_viewport = False
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        mesh = bpy.data.meshes.new_from_object(thing.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph)
+        for modifier, was_shown in is_shown:
+            modifier.show_viewport = was_shown
+        self.temporary.add_mesh(mesh)
+        self.names[mesh.name] = thing.data.name
+        self.temporary.set(thing, 'data', mesh)
+
+    def fill_slots(self):
+        """The exporter of 3.4 fails where a mesh has an empty slot and a material has a node of the kind UV Map."""
+        meshes = [mesh for mesh in bpy.data.meshes if mesh.library is None and None in list(mesh.materials)]
+        self.nothing = self.temporary.add_material() if meshes else None
+        for mesh in meshes:
+            self.temporary.fill_slots(mesh, self.nothing)
+
+    def read_colors_by_corner(self):
+        """The exporter of 3.4 takes the numbers of vertices for those of corners."""
+        creator = importlib.import_module('io_scene_gltf2.blender.exp.gltf2_blender_gather_primitives_extract').PrimitiveCreator
+        name = '_PrimitiveCreator__get_color_attribute'
+        read = getattr(creator, name)
+
+        def read_by_corner(own, attribute):
+            vertices = own.dots['vertex_index'].copy()
+            if attribute['blender_domain'] == 'CORNER':
+                own.dots['vertex_index'] = numpy.arange(len(vertices))
+            read(own, attribute)
+            own.dots['vertex_index'] = vertices
+
+        self.temporary.set(creator, name, read_by_corner)
 
     def report_scene(self):
         scene, report = self.scene, self.report
@@ -168,7 +303,8 @@ class Export:
             if not is_bone:
                 is_instancer = thing.instance_type == 'COLLECTION'
                 is_own_hidden = thing.hide_render if is_in_instance else thing.name_full not in self.rendered
-                if is_hidden or (is_own_hidden and (is_instancer or thing.type in DRAWN_OBJECTS)):
+                is_empty = thing.type == 'META' and not node.children
+                if is_hidden or is_empty or (is_own_hidden and (is_instancer or thing.type in DRAWN_OBJECTS)):
                     node.keep_tag = False
                 is_hidden = is_hidden or (is_own_hidden and is_instancer)
                 is_in_instance = is_in_instance or is_instancer
@@ -214,8 +350,11 @@ class Export:
 
     def write_mesh(self, element, mesh, slots):
         by_name = {material.name: material for material in slots if material is not None}
+        element.name = self.names.get(element.name, element.name)
         for primitive in element.primitives:
             written = primitive.material
+            if self.nothing is not None and written is not None and written.name == self.nothing.name:
+                primitive.material = written = None
             material = by_name.get(getattr(written, 'name', None))
             if not materials.uses_color_attribute(material):
                 # glTF multiplies these by the base colour of any material.
@@ -266,28 +405,18 @@ class Export:
         self.write_instances(element)
 
     def write_instances(self, element):
-        """Nodes for the instances of particles and geometry nodes, which the exporter leaves out."""
-        sources = {node.blender_object: node.node for node in self.settings['vtree'].nodes.values()
+        """Nodes for the instances of particles and geometry nodes, and for metaballs."""
+        sources = {node.blender_object.name: node.node for node in self.settings['vtree'].nodes.values()
                    if node.blender_bone is None and node.node is not None and node.node.mesh is not None and node.node.skin is None}
+        unneeded = [sources[name] for name in self.sources if name in sources]
+        element.nodes = [node for node in element.nodes if not any(node is each for each in unneeded)]
         file_from_blender = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1))) if self.settings['gltf_yup'] else Matrix()
-        unwritten = {}
-        for instance in bpy.context.evaluated_depsgraph_get().object_instances:
-            if not instance.is_instance or instance.parent is None:
-                continue
-            parent, thing = instance.parent.original, instance.object.original
-            # The exporter writes the others. Geometry that nodes have made has the object of the nodes.
-            if parent.instance_type != 'NONE' or parent.name_full not in self.rendered:
-                continue
-            source = sources.get(thing) if thing != parent else None
-            if source is None:
-                unwritten[parent.name] = unwritten.get(parent.name, 0) + 1
-                continue
-            matrix = file_from_blender @ instance.matrix_world @ file_from_blender.inverted()
-            element.nodes.append(type(source)(
-                camera=None, children=[], extensions=None, extras=source.extras, matrix=[x for column in matrix.col for x in column],
-                mesh=source.mesh, name=f"{parent.name} {thing.name}", rotation=None, scale=None, skin=None, translation=None, weights=None))
-        for name, count in unwritten.items():
-            self.report.add(f"object '{name}'", f"{count} of its instances are not written, because what they repeat is not; make them real")
+        for name, source, matrix in self.instances:
+            node = sources[source]
+            matrix = file_from_blender @ matrix @ file_from_blender.inverted()
+            element.nodes.append(type(node)(
+                camera=None, children=[], extensions=None, extras=node.extras, matrix=[x for column in matrix.col for x in column],
+                mesh=node.mesh, name=name, rotation=None, scale=None, skin=None, translation=None, weights=None))
 
     @staticmethod
     def put_camera_first(nodes, scene):
@@ -321,6 +450,7 @@ class Export:
             animations.remove(animation)
 
     def finish(self):
+        self.temporary.end()
         render = self.scene.render
         transform, exposure = view_of(self.scene, self.report)
         width, height = engine.picture_size(render)
@@ -453,6 +583,7 @@ def register_panel():
 
 
 def register():
+    temporary.register()
     engine.register()
     bpy.utils.register_class(GnomonExport)
     bpy.utils.register_class(GNOMON_PT_report)
@@ -466,3 +597,4 @@ def unregister():
     bpy.utils.unregister_class(GNOMON_PT_report)
     bpy.utils.unregister_class(GnomonExport)
     engine.unregister()
+    temporary.unregister()

@@ -21,6 +21,30 @@ MATERIAL = {'base_color': (1.0, 1.0, 1.0), 'base_color_texture': None, 'metallic
             'alpha_cutoff': 0.5}
 
 
+@dataclasses.dataclass(frozen=True)
+class Placing:
+    """Where an image lies: the name of its uv set, or "" for the active one, and a 2x3 matrix of the coordinates."""
+
+    uv_map: str = ""
+    matrix: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+
+
+NO_MATERIAL = None, False, Placing()
+
+
+def placing_of(image_node):
+    """The placing of an image: by a Mapping, a UV Map, both or neither."""
+    node, matrix = materials.source_of(image_node.inputs['Vector']), Matrix()
+    if node is not None and node.type == 'MAPPING' and node.vector_type != 'NORMAL':
+        place = node.inputs['Location'].default_value if 'Location' in node.inputs and node.vector_type != 'VECTOR' else (0, 0, 0)
+        matrix = Matrix.LocRotScale(place, node.inputs['Rotation'].default_value, node.inputs['Scale'].default_value)
+        if node.vector_type == 'TEXTURE':
+            matrix = matrix.inverted_safe()
+        node = materials.source_of(node.inputs['Vector'])
+    uv_map = node.uv_map if node is not None and node.type == 'UVMAP' else ""
+    return Placing(uv_map, tuple((*row[:2], row[3]) for row in matrix[:2]))
+
+
 def matrix_of(matrix):
     """A matrix of Blender's world in Gnomon's, which has +Y up."""
     return numpy.array(FILE_FROM_BLENDER @ matrix)
@@ -33,7 +57,9 @@ def numbers(collection, attribute, width, kind=numpy.float32):
 
 
 def parts_of(mesh, slots):
-    """A Part for each material of a mesh; vertices are its face corners. slots: (name of the material or None, whether light passes it).
+    """A Part for each material of a mesh; vertices are its face corners.
+
+    slots: (name of the material or None, whether light passes it, placing of its images)
 
     Keys of materials are (name, thickness of the body, m).
     """
@@ -48,23 +74,33 @@ def parts_of(mesh, slots):
     vertices = numbers(mesh.loops, 'vertex_index', 1, numpy.int32)
     triangles = numbers(mesh.loop_triangles, 'loops', 3, numpy.int32)
     indices = numbers(mesh.loop_triangles, 'material_index', 1, numpy.int32)
-    layer = next((each for each in mesh.uv_layers if each.active_render), None)
-    uvs = None
-    if layer is not None:
-        uvs = numbers(layer.data, 'uv', 2)
-        uvs[:, 1] = 1 - uvs[:, 1]
     parts = []
     for index in numpy.unique(indices):
         own = triangles[indices == index]
         corners, own = numpy.unique(own, return_inverse=True)
         arrays = {'positions': positions[vertices[corners]], 'normals': normals[corners],
                   'triangles': own.reshape(-1, 3).astype(numpy.uint32)}
-        if uvs is not None:
-            arrays['uvs'] = uvs[corners]
-        name, is_glass = slots[min(index, len(slots) - 1)] if slots else (None, False)
+        name, is_glass, placing = slots[min(index, len(slots) - 1)] if slots else NO_MATERIAL
+        layer = layer_of(mesh, placing)
+        if layer is not None:
+            arrays['uvs'] = placed(numbers(layer.data, 'uv', 2)[corners], placing)
         thickness = closed.thickness(arrays['positions'], arrays['triangles']) if is_glass else 0.0
         parts.append(Part(arrays, name and (name, round(thickness, 6))))
     return parts
+
+
+def layer_of(mesh, placing):
+    """The uv set of a placing, or the active one for renders. None if the mesh has none."""
+    active = next((each for each in mesh.uv_layers if each.active_render), None)
+    return mesh.uv_layers.get(placing.uv_map, active)
+
+
+def placed(uvs, placing):
+    """Coordinates of Blender, as images have them: from the top."""
+    matrix = numpy.array(placing.matrix)
+    uvs = uvs @ matrix[:, :2].T + matrix[:, 2]
+    uvs[:, 1] = 1 - uvs[:, 1]
+    return uvs.astype(numpy.float32)
 
 
 class Thing:
@@ -90,6 +126,8 @@ class Collector:
         self.materials = {}
         # By the name of a material: its custom property gnomon_thickness.
         self.thicknesses = {}
+        # By the name of a material: the placing of its images.
+        self.placings = {}
         self.remarks = []
         self.last = None
         # The number of instances of the last depsgraph.
@@ -132,6 +170,7 @@ class Collector:
         self.remarks = []
         self.materials = {}
         self.thicknesses = {}
+        self.placings = {}
         self.repeated = set()
         content = Content()
         instances = depsgraph.object_instances
@@ -182,7 +221,7 @@ class Collector:
         """The key of an object's mesh, which is in self.meshes; None if it has no triangles."""
         data = thing.data
         slots = [slot.material for slot in thing.material_slots]
-        names = tuple(self.material_of(material.original, content) if material else (None, False) for material in slots)
+        names = tuple(self.material_of(material.original, content) if material else NO_MATERIAL for material in slots)
         key = ((thing.original.name, data.original.name if data.original else ''), data.as_pointer(), names)
         if not thing.modifiers and thing.type == 'MESH':
             # Objects that share a mesh share its copy.
@@ -206,7 +245,7 @@ class Collector:
         return name if content.lamps[name]['intensity'] > 0 else None
 
     def material_of(self, material, content):
-        """(name, whether light passes it)"""
+        """(name, whether light passes it, placing of its images)"""
         name = material.name_full
         if name not in self.materials:
             for remark in materials.remarks_of(material):
@@ -217,7 +256,18 @@ class Collector:
             self.materials[name] = values
             if 'gnomon_thickness' in material:
                 self.thicknesses[name] = max(float(material['gnomon_thickness']), 0.0)
-        return name, self.materials[name]['transmission'] > 0
+            self.placings[name] = self.common_placing(material)
+        return name, self.materials[name]['transmission'] > 0, self.placings[name]
+
+    def common_placing(self, material):
+        """The placing of the first image of a material."""
+        nodes = [node for node in materials.surface_nodes(material) if node.type == 'TEX_IMAGE' and node.image]
+        placings = list(dict.fromkeys(map(placing_of, nodes)))
+        if len(placings) > 1:
+            self.remark(f"material '{material.name}': the viewport places its images all as '{nodes[0].image.name}'")
+        if any(node.extension != 'REPEAT' for node in nodes):
+            self.remark(f"material '{material.name}': the viewport repeats all images")
+        return placings[0] if placings else Placing()
 
     def add_materials(self, parts, content):
         for part in parts:
@@ -303,8 +353,6 @@ class Collector:
             is_alpha = socket.name == 'Alpha' and image_of(socket) is not None and image_of(socket) == image_of(node.inputs['Base Color'])
             if not is_alpha and (values.get(drawn.get(socket.name)) is None or (socket.name != 'Normal' and image_of(socket) is None)):
                 self.remark(f"material '{material.name}': what '{socket.name}' is linked to is not drawn in the viewport")
-            elif any(each.type == 'MAPPING' for each in nodes):
-                self.remark(f"material '{material.name}': the mapping of '{socket.name}' is not drawn in the viewport")
 
     def texture(self, sources, content):
         """The key of a texture of (image, channel) pairs: one whole image, or an image's channel for each of its channels."""

@@ -34,6 +34,25 @@ def upstream(socket, seen):
     return seen
 
 
+def surface_nodes(material):
+    """The nodes that lead to the surface of a material."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    return upstream(output.inputs['Surface'], []) if output else []
+
+
+def placing_remarks(material):
+    """Sentences about images that are not placed by a uv set."""
+    remarks = []
+    for node in surface_nodes(material):
+        if node.type == 'TEX_IMAGE' and node.image:
+            kinds = [link.from_socket.name for each in [node, *upstream(node.inputs['Vector'], [])] for socket in each.inputs
+                     for link in socket.links if link.from_node.type == 'TEX_COORD']
+            kind = next((each for each in kinds if each != 'UV'), None) or (node.projection if node.projection != 'FLAT' else None)
+            if kind:
+                remarks.append(f"the image '{node.image.name}' is drawn by the uv set, not by {kind.capitalize()}")
+    return remarks
+
+
 def remarks_of(material):
     """Sentences about what of a material is not drawn."""
     if not material.use_nodes or material.node_tree is None:
@@ -41,7 +60,7 @@ def remarks_of(material):
     output = output_of(material.node_tree)
     if output is None:
         return ["it has no output, so that Blender draws it black"]
-    remarks = []
+    remarks = placing_remarks(material)
     surface = source_of(output.inputs['Surface'])
     if surface is None:
         if not output.inputs['Volume'].is_linked:
