@@ -16,6 +16,7 @@
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
 #include "internal/gltf_world.hh"
+#include "scene_joints.hh"
 #include "trace.hh"
 
 #include <glm/common.hpp>
@@ -127,6 +128,7 @@ class Importer {
     scene::deform_meshes(scene_);
     progress_.begin_phase(meshes_.image_count(), 0.95F);
     meshes_.finish();
+    scene::close_joints(scene_);
     check_anything_kept();
     progress_.begin_phase(1, 1.0F);
     import_world(file_, visible_nodes(), options_.read_picture, warnings_, scene_);
