@@ -51,11 +51,13 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
 const float CONTACT_ERROR_TEXELS = 0.1;
 
 /**
- * Largest rise of the receiver's plane within a texel, in parts of all depths of a layer. The surface does not reach the texels around
- * the receiver then, so that its plane there is in front of casters or behind them by chance. The light of a sun is at less than
- * about 10 / texels to the surface: 0.5 degrees with 1024 texels.
+ * Largest rise of the receiver's plane within a texel, in parts of all depths of a layer of GRAZING_SIZE_PX. The surface does not reach
+ * the texels around the receiver then, so that its plane there is in front of casters or behind them by chance. The light of a sun is at
+ * less than about 10 / GRAZING_SIZE_PX to the surface: 0.5 degrees. In smaller layers, more may rise, because the light of a low sun would
+ * be lost.
  */
 const float GRAZING_RISE_MAX = 0.1;
+const float GRAZING_SIZE_PX = 1024.0;
 
 /**
  * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
@@ -126,7 +128,8 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
     blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
   }
-  bool is_grazed = abs(plane.slope.x) + abs(plane.slope.y) > GRAZING_RISE_MAX;
+  float rise_max = GRAZING_RISE_MAX * max(GRAZING_SIZE_PX / float(size_px), 1.0);
+  bool is_grazed = abs(plane.slope.x) + abs(plane.slope.y) > rise_max;
   return is_grazed ? 0.0 : is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
 }
 
