@@ -51,13 +51,13 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
 const float CONTACT_ERROR_TEXELS = 0.1;
 
 /**
- * Largest rise of the receiver's plane within a texel, in parts of all depths of a layer of GRAZING_SIZE_PX. The surface does not reach
- * the texels around the receiver then, so that its plane there is in front of casters or behind them by chance. The light of a sun is at
- * less than about 10 / GRAZING_SIZE_PX to the surface: 0.5 degrees. In smaller layers, more may rise, because the light of a low sun would
- * be lost.
+ * Largest rise of the receiver's plane within a texel, in parts of all depths of a layer. The surface does not reach the texels around
+ * the receiver then, so that its plane there is in front of casters or behind them by chance. The light of a sun is at less than about
+ * 10 / texels to the surface: 0.5 degrees with 1024 texels. In layers smaller than GRAZING_SIZE_PX, as in previews, more may rise,
+ * because the light of a low sun would be lost: it is at less than about 1 degree.
  */
 const float GRAZING_RISE_MAX = 0.1;
-const float GRAZING_SIZE_PX = 1024.0;
+const float GRAZING_SIZE_PX = 512.0;
 
 /**
  * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
