@@ -578,7 +578,7 @@ void change(Value &value, const Description &row)
     value = Value((std::size_t(value) + 1) % words<Value>.size());
   }
   else if constexpr (std::is_same_v<Value, int>) {
-    value = int(other);
+    value = int(std::ceil(other));
   }
   else {
     // The end of a shadow is beyond its start.

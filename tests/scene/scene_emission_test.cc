@@ -129,7 +129,7 @@ TEST_F(EmissiveSurfacesTest, WhatEmitsNoLightHasNoPatches)
 
 TEST_F(EmissiveSurfacesTest, PatchesAreBoundedAndFinite)
 {
-  material.emissive = glm::vec3(3e38F);
+  material.emissive = glm::vec3(float(light_max));
   material.emissive_texture = image(1, {255, 255, 255, 255});
   for (glm::vec2 &uv : mesh.uvs) {
     uv *= 1e6F;
