@@ -621,14 +621,15 @@ bool set_numbers(Value &value, double number)
   return false;
 }
 
-/** The pointer to a property, or to its first number, in a file. Empty: the file does not have it. */
-std::string pointer_to(const json &document, const scene::Description &row)
+/** The pointer to a property of a thing \a within a file, or to its first number. Empty: the file does not have it. */
+std::string pointer_to(const json &document, const scene::Description &row, const std::string &within)
 {
   const std::array places{'/' + std::string(row.path), "/gnomon_" + std::string(row.key_or_name())};
   const json values = document.flatten();
   for (const auto &[pointer, value] : values.items()) {
     for (const std::string &place : places) {
-      if (place != "/" && (pointer.ends_with(place) || pointer.ends_with(place + "/0"))) {
+      if (place != "/" && pointer.find(within) != pointer.npos &&
+          (pointer.ends_with(place) || pointer.ends_with(place + "/0"))) {
         return pointer;
       }
     }
@@ -636,23 +637,23 @@ std::string pointer_to(const json &document, const scene::Description &row)
   return {};
 }
 
-/** Without those about a camera and a lamp, which the scene lacks. */
+/** Without those about what the scene lacks, such as a camera. */
 std::string warnings_of_things(const Scene &scene)
 {
   std::string text;
   for (const std::string &warning : scene.warnings) {
-    text += warning.starts_with("scene: has no ") ? "" : warning + '\n';
+    text += warning.starts_with("scene: has ") ? "" : warning + '\n';
   }
   return text;
 }
 
 /**
  * Each number of a \a part of a thing of \a kind is read back at its limits, and reported beyond them. \a scene_of: a
- * scene with the part. \a part_of: the part of such a scene.
+ * scene with the part. \a part_of: the part of such a scene. \a within: a key that holds it in the file.
  */
 template <typename Part>
 void expect_limits(Part part, unsigned kind, const std::function<Scene(const Part &)> &scene_of,
-                   const std::function<Part(const Scene &)> &part_of)
+                   const std::function<Part(const Scene &)> &part_of, const std::string &within)
 {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "limit.gltf";
@@ -675,7 +676,7 @@ void expect_limits(Part part, unsigned kind, const std::function<Scene(const Par
       EXPECT_EQ(warnings_of_things(copy), "");
       EXPECT_EQ(part_of(copy).*row.member, member);
       json document = json::parse(content_of(path));
-      const std::string pointer = pointer_to(document, row);
+      const std::string pointer = pointer_to(document, row, within);
       if (pointer.empty()) {
         // The limit is glTF's default.
         continue;
@@ -683,7 +684,7 @@ void expect_limits(Part part, unsigned kind, const std::function<Scene(const Par
       is_written = true;
       json &number = document[json::json_pointer(pointer)];
       const double inside = number;
-      const double step = number.is_number_float() ? 0.01 * std::max(1.0, std::abs(inside)) : 1.0;
+      const double step = std::max(number.is_number_float() ? 0.01 : 1.0, 0.01 * std::abs(inside));
       number = is_max ? inside + step : inside > 0.0 ? 0.5 * inside : inside - step;
       try {
         const Scene changed = gltf::import_gltf(folder.write("beyond.gltf", document.dump()));
@@ -715,7 +716,7 @@ TEST(GltfExport, NumbersReadBackAtTheirLimitsAndAreReportedBeyondThem)
   const auto lamp_of_scene = [](const Scene &scene) { return scene.lamps()[scene.lamps().first()]; };
   for (std::size_t kind = 0; kind < scene::words<scene::LampKind>.size(); kind++) {
     const scene::Lamp lamp{.name = "lamp", .kind = scene::LampKind(kind)};
-    expect_limits<scene::Lamp>(lamp, unsigned(kind), with_lamp, lamp_of_scene);
+    expect_limits<scene::Lamp>(lamp, unsigned(kind), with_lamp, lamp_of_scene, "");
     expect_limits<scene::LampShadow>(
         {}, unsigned(kind),
         [&](const scene::LampShadow &shadow) {
@@ -723,7 +724,7 @@ TEST(GltfExport, NumbersReadBackAtTheirLimitsAndAreReportedBeyondThem)
           shadowed.shadow = shadow;
           return with_lamp(shadowed);
         },
-        [&](const Scene &scene) { return lamp_of_scene(scene).shadow; });
+        [&](const Scene &scene) { return lamp_of_scene(scene).shadow; }, "nodes");
   }
   for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
     scene::Camera camera{.name = "eye", .kind = kind};
@@ -735,7 +736,7 @@ TEST(GltfExport, NumbersReadBackAtTheirLimitsAndAreReportedBeyondThem)
           on_node(scene, {.camera = scene.add(value)});
           return scene;
         },
-        [](const Scene &scene) { return scene.cameras()[scene.cameras().first()]; });
+        [](const Scene &scene) { return scene.cameras()[scene.cameras().first()]; }, "");
   }
   Values value;
   scene::Mesh mesh = triangle("leaf", value);
@@ -757,7 +758,7 @@ TEST(GltfExport, NumbersReadBackAtTheirLimitsAndAreReportedBeyondThem)
   scene::Material material{.name = "paint"};
   // The exporter divides the tint by the reflectance of the index: a black one has any index.
   material.specular_color = glm::vec3(0.0F);
-  expect_limits<scene::Material>(material, 0, with_material, material_of_scene);
+  expect_limits<scene::Material>(material, 0, with_material, material_of_scene, "materials");
   expect_limits<scene::TextureSlot>(
       {}, 0,
       [&](const scene::TextureSlot &slot) {
@@ -765,7 +766,7 @@ TEST(GltfExport, NumbersReadBackAtTheirLimitsAndAreReportedBeyondThem)
         turned.base_color_texture = slot;
         return with_material(turned);
       },
-      [&](const Scene &scene) { return material_of_scene(scene).base_color_texture; });
+      [&](const Scene &scene) { return material_of_scene(scene).base_color_texture; }, "baseColorTexture");
 }
 
 std::string export_error(const Scene &scene, const std::filesystem::path &path)
