@@ -95,6 +95,64 @@ TEST_F(ShaderFilesTest, AnySubsetOfAProgramsStagesIsRight)
   EXPECT_EQ(check("q_tesc.glsl q.frag --target vulkan").status, 0) << "they are not linked across a gap";
 }
 
+struct Connection {
+  std::string output;
+  std::string input;
+  std::string read;
+  /** The line of the mistake and its rule; line 0: there is none. */
+  int line = 0;
+  std::string rule{};
+};
+
+TEST_F(ShaderFilesTest, MembersOfBlocksAndStructsAreConnectedInVulkan)
+{
+  const std::string pair = "struct S {\nvec4 a;\nvec4 b;\n};\n";
+  const std::string other_pair = "struct S {\nvec4 a;\nvec2 b;\n};\n";
+  const std::string array = "struct S {\nvec4 a;\nvec4 b[2];\n};\n";
+  const std::vector<Connection> connections = {
+      {"layout(location = 0) out B { vec4 x; vec4 y; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;",
+       "i.y"},
+      {"layout(location = 0) out B { vec4 x; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;", "i.x + i.y",
+       4, "missing-varying"},
+      // A member that is not read needs no output.
+      {"layout(location = 0) out B { vec4 x; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;", "i.x"},
+      {"layout(location = 0) out B { vec4 x; vec2 y; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;",
+       "i.y", 4, "varying-type"},
+      {"out B { layout(location = 0) vec4 x; layout(location = 2) vec4 y; } o;",
+       "in B {\nlayout(location = 0) vec4 x;\nlayout(location = 1) vec4 y;\n} i;", "i.y", 4, "missing-varying"},
+      // Names of blocks and members do not count, and a member may be connected to a variable.
+      {"layout(location = 1) out Other { vec4 x; mat2 m; vec4 y; } o;",
+       "layout(location = 1) in vec4 x;\nlayout(location = 2) in B {\nmat2 m;\nvec4 z;\n} i;", "x + i.z + i.m[0].xyxy"},
+      {"layout(location = 1) out Other { vec4 x; mat2 m; vec4 y; } o;",
+       "layout(location = 1) in vec4 x;\nlayout(location = 4) in B {\nvec2 z;\n} i;", "x + i.z.xyxy", 4,
+       "varying-type"},
+      {pair + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a + s.b"},
+      {other_pair + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 4, "varying-type"},
+      {array + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 4, "varying-type"},
+      {"struct S { vec4 a; };\nlayout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 6,
+       "varying-type"},
+      {pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[2];\n} i;",
+       "i.s[1].b"},
+      {other_pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[2];\n} i;",
+       "i.s[1].b", 4, "varying-type"},
+      {pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[3];\n} i;",
+       "i.s[1].b", 3, "varying-type"},
+  };
+  for (const Connection &one : connections) {
+    write("x.vert", "#version 450\n" + one.output + "\nvoid main() { gl_Position = vec4(0); }\n");
+    write("x.frag",
+          "#version 450\n" + one.input + "\nlayout(location = 0) out vec4 c;\nvoid main() { c = " + one.read + "; }\n");
+    const Finished finished = check("x.vert x.frag --target vulkan");
+    EXPECT_EQ(finished.status, one.line == 0 ? 0 : 1) << one.output << one.input << finished.out;
+    if (one.line > 0) {
+      const std::size_t at = finished.out.find(fmt::format("x.frag:{}: error: ", one.line));
+      ASSERT_NE(at, std::string::npos) << one.output << one.input << finished.out;
+      EXPECT_NE(finished.out.substr(at, finished.out.find('\n', at) - at).find("[" + one.rule + "]"), std::string::npos)
+          << finished.out;
+    }
+  }
+}
+
 TEST_F(ShaderFilesTest, TheLastDefinitionOfAMacroIsTheOneThatCounts)
 {
   write("n.frag", fragment_head + "#if N != 2\noops\n#endif\nvoid main() { c = vec4(N); }\n");

@@ -434,6 +434,24 @@ bool Checker::is_part(const Declaration &output, const Declaration &input) const
          output.type.scalar == input.type.scalar && input.type.vector_size < output.type.vector_size;
 }
 
+void Checker::check_members(std::size_t stage, const Declaration &input, const Declaration &output)
+{
+  const std::string_view before = to_string(c_.sources[stage - 1]->stage());
+  const auto [read, written] = std::ranges::mismatch(
+      input.members, output.members, {}, [](const BlockMember &member) { return type_name(member.type); },
+      [](const BlockMember &member) { return type_name(member.type); });
+  if (read != input.members.end() && written != output.members.end()) {
+    add(Severity::Error, "varying-type", stage, read->position,
+        fmt::format("member '{}' of the input {} is {}, and the {} stage writes {}", read->name, named(input),
+                    type_name(read->type), before, type_name(written->type)));
+  }
+  else if (read != input.members.end() || written != output.members.end()) {
+    add(Severity::Error, "varying-type", stage, input.position,
+        fmt::format("input {} has {} members, and the {} stage writes {}", named(input), input.members.size(), before,
+                    output.members.size()));
+  }
+}
+
 void Checker::check_varyings()
 {
   for (std::size_t i = 1; i < c_.facts.size(); i++) {
@@ -445,23 +463,28 @@ void Checker::check_varyings()
     for (const Declaration &input : c_.facts[i].inputs) {
       const auto output = std::ranges::find_if(outputs, [&](const Declaration &o) { return match(o, input); });
       if (output == outputs.end()) {
-        if (input.is_used && !input.is_member) {
+        if (input.is_used) {
           add(Severity::Error, "missing-varying", i, input.position,
               fmt::format("input {} is no output of the {} stage", named(input), before));
         }
         continue;
       }
+      if (output->location != input.location || output->component != input.component) {
+        continue;
+      }
       const std::string written = type_name(output->type, output->is_arrayed);
       const std::string read = type_name(input.type, input.is_arrayed);
-      if (output->location == input.location && output->component == input.component && written != read &&
-          !input.type.is_struct && !is_part(*output, input)) {
+      if (input.type.is_struct && output->type.is_struct) {
+        check_members(i, input, *output);
+      }
+      else if (written != read && !input.type.is_struct && !is_part(*output, input)) {
         add(Severity::Error, "varying-type", i, input.position,
             fmt::format("input {} is {}, and the {} stage writes {}", named(input), read, before, written));
       }
     }
     for (const Declaration &output : outputs) {
       if (!output.is_captured && std::ranges::none_of(c_.facts[i].inputs, [&](const Declaration &input) {
-            return input.is_used && match(output, input);
+            return (input.is_used || input.is_block_used) && match(output, input);
           })) {
         add(Severity::Warning, "unread-output", i - 1, output.position,
             fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i]->stage())));

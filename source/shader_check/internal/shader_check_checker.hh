@@ -67,6 +67,8 @@ class Checker {
   void check_slots();
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
   [[nodiscard]] bool is_part(const Declaration &output, const Declaration &input) const;
+  /** An input and an output that are structs. Their members are compared in their order; names may differ. */
+  void check_members(std::size_t stage, const Declaration &input, const Declaration &output);
   void check_varyings();
   void check_unused_bindings();
   void check_blocks();
