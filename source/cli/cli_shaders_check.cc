@@ -274,11 +274,17 @@ fs::path output_path(const CheckArguments &arguments, const std::string &file)
                                      : fs::path(arguments.output);
 }
 
-/** \throws output::Conflict if an output would replace an input or another output */
-void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
+/**
+ * The files that are known before shaders are read. \throws output::Conflict if an output would replace an input or
+ * another output
+ */
+output::Roles roles_of(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
 {
   output::Roles roles;
   roles.add_input(arguments.manifest, "--manifest");
+  for (const std::string &file : arguments.files) {
+    roles.add_input(file, "a shader");
+  }
   for (const ShaderManifest::Entry &entry : entries) {
     for (const shader_check::Program::File &file : entry.program.files) {
       roles.add_input(file.path, "a shader");
@@ -296,6 +302,7 @@ void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const Ch
   }
   roles.add_output(arguments.depfile, "-MF");
   keep_text_from(roles);
+  return roles;
 }
 
 /** Writes the SPIR-V of \a checks: of one file to the path of -o, of more into that folder. */
@@ -435,7 +442,7 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   for (ShaderManifest::Entry &entry : project.entries) {
     add_defines(entry.program.defines, arguments.defines);
   }
-  require_outputs(project.entries, arguments);
+  output::Roles roles = roles_of(project.entries, arguments);
   shader_check::FolderFiles folder{fs::path()};
   const std::string input =
       arguments.input.empty() ? std::string() : std::string(std::istreambuf_iterator<char>(std::cin), {});
@@ -454,6 +461,11 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   const std::vector<ShaderJob> jobs = jobs_of(project, files, options, arguments);
   std::vector<shader_check::ProgramCheck> checks;
   ShaderReport report = report_of(jobs, files, arguments, &checks);
+  for (const shader_check::ProgramCheck &check : checks) {
+    for (const std::string &path : check.files) {
+      roles.add_input(path, "an include");
+    }
+  }
   if (!arguments.output.empty()) {
     add_missing_output(project.entries, checks, arguments, report);
   }

@@ -302,6 +302,29 @@ TEST_F(ShaderFilesTest, DepfileNamesWhatWasRead)
   EXPECT_EQ(check("a.frag -MD -o a.spv").status, 2) << "no depfile";
 }
 
+TEST_F(ShaderFilesTest, NoOutputReplacesAnInclude)
+{
+  const std::string text = "vec4 one() { return vec4(1); }\n";
+  write_file("lib/one.glsl", text);
+  write("a.frag", fragment_head + "#include \"one.glsl\"\nvoid main() { c = one(); }\n");
+  write("m.json", R"({"include_folders": ["lib"], "programs": [{"files": ["a.frag"]}]})");
+  std::filesystem::create_symlink("lib/one.glsl", folder / "link.spv");
+  std::filesystem::create_hard_link(folder / "lib/one.glsl", folder / "hard.spv");
+  for (const std::string arguments :
+       {"a.frag -I lib -o lib/one.glsl", "a.frag -I lib -o ./lib/../lib/one.glsl", "a.frag -I lib -o link.spv",
+        "a.frag -I lib -o hard.spv", "a.frag -I lib -o a.spv -MD -MF lib/one.glsl", "a.frag -I lib -MF link.spv -MT t",
+        "--manifest m.json -MF lib/one.glsl -MT t", "a.frag -I lib --cache cache -o lib/one.glsl",
+        "a.frag -I lib --cache cache -o lib/one.glsl"}) {
+    const Finished finished = check(arguments + " --target vulkan");
+    EXPECT_EQ(finished.status, 2) << arguments << finished.out;
+    EXPECT_NE(finished.err.find("would replace an include"), std::string::npos) << arguments << finished.err;
+    EXPECT_NE(finished.err.find("lib/one.glsl"), std::string::npos) << arguments << finished.err;
+    EXPECT_EQ(read("lib/one.glsl"), text) << arguments;
+    write("lib/one.glsl", text);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.spv")) << "another output is not written either";
+}
+
 TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
 {
   write_file("lib/b.glsl", "float b = 1.0;\n");
