@@ -10,10 +10,13 @@
 #include "scene_types.hh"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
-#include <iostream>
+#include <cstdio>
 #include <iterator>
 #include <set>
+#include <stdexcept>
+#include <system_error>
 
 namespace gnomon::cli {
 
@@ -432,6 +435,19 @@ void write_dependencies(std::span<const shader_check::ProgramCheck> checks, cons
                 read);
 }
 
+/** The text on standard input, as far as a stage may have it. \throws std::runtime_error */
+std::string read_standard_input()
+{
+  // A longer text is refused, so that its rest is not needed.
+  std::string text(shader_check::stage_bytes_max + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), stdin));
+  if (std::ferror(stdin) != 0) {
+    throw std::runtime_error(
+        fmt::format("--stdin: standard input cannot be read: {}", std::generic_category().message(errno)));
+  }
+  return text;
+}
+
 /** Checks FILES, or the programs of --manifest. */
 ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
 {
@@ -444,8 +460,7 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   }
   output::Roles roles = roles_of(project.entries, arguments);
   shader_check::FolderFiles folder{fs::path()};
-  const std::string input =
-      arguments.input.empty() ? std::string() : std::string(std::istreambuf_iterator<char>(std::cin), {});
+  const std::string input = arguments.input.empty() ? std::string() : read_standard_input();
   const gpu::ShaderFiles files = [&](std::string_view path) {
     return !arguments.input.empty() && path == arguments.input ? std::optional<std::string_view>(input)
                                                                : folder.text(path);
@@ -514,8 +529,17 @@ void require_usage(const CheckArguments &a)
 
 Status check(CheckArguments arguments)
 {
-  if (!arguments.input.empty() && std::ranges::find(arguments.files, arguments.input) == arguments.files.end()) {
-    arguments.files.push_back(arguments.input);
+  if (!arguments.input.empty()) {
+    const std::optional<output::FileId> input = output::file_id(arguments.input);
+    const auto file = std::ranges::find_if(arguments.files, [&](const std::string &path) {
+      return path == arguments.input || (input && output::file_id(path) == input);
+    });
+    if (file == arguments.files.end()) {
+      arguments.files.push_back(arguments.input);
+    }
+    else {
+      arguments.input = *file;
+    }
   }
   require_usage(arguments);
   bool is_any_checked = true;

@@ -524,6 +524,27 @@ TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
   EXPECT_EQ(run("shaders check --stdin shaders/near.glsl --stage frag", folder / "through.sh").status, 1);
 }
 
+TEST_F(ShaderFilesTest, StandardInputThatCannotBeReadIsNoEmptyShader)
+{
+  write("a.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  for (const std::string from : {"<&-", "0> written", "< ."}) {
+    write("through.sh", "#!/bin/sh\nexec '" + std::string(GNOMON_PROGRAM) + "' \"$@\" " + from + "\n");
+    std::filesystem::permissions(folder / "through.sh", std::filesystem::perms::owner_all);
+    const Finished finished = run("shaders check --stdin a.frag", folder / "through.sh");
+    EXPECT_EQ(finished.status, 1) << from << finished.out;
+    EXPECT_NE(finished.err.find("standard input cannot be read"), std::string::npos) << from << finished.err;
+  }
+  std::filesystem::create_directory(folder / "d");
+  std::filesystem::create_symlink("a.frag", folder / "link.frag");
+  for (const std::string path : {"./a.frag", "d/../a.frag", "link.frag"}) {
+    write("through.sh", "#!/bin/sh\necho oops | '" + std::string(GNOMON_PROGRAM) + "' \"$@\"\n");
+    const Finished finished = run("shaders check a.frag --stdin " + path, folder / "through.sh");
+    EXPECT_EQ(finished.status, 1);
+    EXPECT_NE(finished.out.find("1 programs"), std::string::npos) << path << finished.out;
+    EXPECT_EQ(finished.out.find("a.frag:1: error"), 0U) << path << finished.out;
+  }
+}
+
 TEST_F(ShaderFilesTest, LevelsAreOptions)
 {
   write("a.frag",
