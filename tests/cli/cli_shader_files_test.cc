@@ -153,6 +153,58 @@ TEST_F(ShaderFilesTest, MembersOfBlocksAndStructsAreConnectedInVulkan)
   }
 }
 
+TEST_F(ShaderFilesTest, StagesThatADriverDoesNotLinkAreErrors)
+{
+  const auto is_linked = [&](const std::string &vertex, const std::string &fragment, const std::string &target) {
+    write("x.vert", vertex);
+    write("x.frag", fragment);
+    const Finished finished = check("x.vert x.frag --target " + target);
+    EXPECT_TRUE(finished.status == 0 || finished.out.find("[link]") != std::string::npos) << finished.out;
+    return finished.status == 0;
+  };
+  // As Mesa 22 links them, except that it takes `smooth` for another qualifier than none before 4.40.
+  for (const int version : {130, 150, 330, 400, 430, 440, 450, 460}) {
+    for (const std::string output : {"", "smooth ", "flat ", "noperspective "}) {
+      for (const std::string input : {"", "smooth ", "flat ", "noperspective "}) {
+        const auto plain = [](const std::string &word) { return word == "smooth " ? std::string() : word; };
+        const std::string head = fmt::format("#version {}\n", version);
+        EXPECT_EQ(is_linked(head + output + "out vec4 v;\nvoid main() { gl_Position = v = vec4(1); }\n",
+                            head + input + "in vec4 v;\nout vec4 c;\nvoid main() { c = v; }\n", "opengl"),
+                  version >= 440 || plain(output) == plain(input))
+            << version << output << input;
+      }
+    }
+  }
+  for (const int version : {120, 130, 330, 410, 420, 450}) {
+    const std::string head = fmt::format("#version {}\n", version);
+    const bool is_old = version < 130;
+    EXPECT_EQ(is_linked(head + "invariant " + (is_old ? "varying" : "out") +
+                            " vec4 v;\nvoid main() { gl_Position = v = vec4(1); }\n",
+                        head + (is_old ? "varying vec4 v;\n" : "in vec4 v;\nout vec4 c;\n") + "void main() { " +
+                            (is_old ? "gl_FragColor" : "c") + " = v; }\n",
+                        "opengl"),
+              version >= 420)
+        << version;
+  }
+  const std::map<std::string, std::pair<std::string, std::string>> es = {
+      {"", {"varying vec4 v;\n", "gl_FragColor"}},
+      {"#version 300 es\n", {"in vec4 v;\nout vec4 c;\n", "c"}},
+      {"#version 310 es\n", {"in vec4 v;\nout vec4 c;\n", "c"}}};
+  for (const auto &[before, vertex] : es) {
+    for (const auto &[after, fragment] : es) {
+      EXPECT_EQ(is_linked(before + (before.empty() ? "varying" : "out") +
+                              " vec4 v;\nvoid main() { gl_Position = v = vec4(1.0); }\n",
+                          after + "precision mediump float;\n" + fragment.first + "void main() { " + fragment.second +
+                              " = v; }\n",
+                          "es"),
+                before == after)
+          << before << after;
+    }
+  }
+  EXPECT_FALSE(is_linked("#version 300 es\nvoid main() { gl_Position = vec4(1.0); }\n",
+                         "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", "opengl"));
+}
+
 TEST_F(ShaderFilesTest, TheLastDefinitionOfAMacroIsTheOneThatCounts)
 {
   write("n.frag", fragment_head + "#if N != 2\noops\n#endif\nvoid main() { c = vec4(N); }\n");

@@ -278,6 +278,7 @@ void Checker::link_stages()
   }
   c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
   check_findings();
+  check_versions();
   check_slots();
   check_varyings();
   if (!is_linked && may_differ(link_messages(log))) {
@@ -434,6 +435,55 @@ bool Checker::is_part(const Declaration &output, const Declaration &input) const
          output.type.scalar == input.type.scalar && input.type.vector_size < output.type.vector_size;
 }
 
+void Checker::check_versions()
+{
+  if (has_spirv(options_.target)) {
+    return;
+  }
+  const Version usual{options_.target == CheckTarget::Es ? 100 : 110, {}};
+  const Version first = version_in(c_.sources.front()->text()).value_or(usual);
+  for (std::size_t i = 1; i < c_.sources.size(); i++) {
+    const Version version = version_in(c_.sources[i]->text()).value_or(usual);
+    if (version.is_es() != first.is_es() || (version.is_es() && version.number != first.number)) {
+      const auto name_of = [](const Version &one) {
+        return fmt::format("{} {}", one.is_es() ? "GLSL ES" : "GLSL", one.number);
+      };
+      add(Severity::Error, "link", i, {0, version.line},
+          fmt::format("this stage is {}, and the {} stage {}; a driver does not link them", name_of(version),
+                      to_string(c_.sources.front()->stage()), name_of(first)));
+    }
+  }
+}
+
+void Checker::check_qualifiers(std::size_t stage, const Declaration &input, const Declaration &output)
+{
+  if (has_spirv(options_.target)) {
+    return;
+  }
+  // Rules are those of the newest version in the program.
+  Version version{110, {}};
+  for (const std::unique_ptr<StageSource> &source : c_.sources) {
+    const Version other = version_in(source->text()).value_or(version);
+    version = other.number > version.number ? other : version;
+  }
+  const std::string_view before = to_string(c_.sources[stage - 1]->stage());
+  const auto name_of = [](const Declaration &one) {
+    return one.is_flat ? "flat" : one.is_no_perspective ? "noperspective" : "smooth";
+  };
+  if ((version.is_es() || version.number < 440) && std::string_view(name_of(input)) != name_of(output)) {
+    add(Severity::Error, "link", stage, input.position,
+        fmt::format("input {} is {}, and the {} stage writes it {}; they may differ from GLSL 4.40 on", named(input),
+                    name_of(input), before, name_of(output)));
+  }
+  // GLSL ES 3.00 and GLSL 4.20 made `invariant` a matter of outputs.
+  if ((version.is_es() ? version.number < 300 : version.number < 420) && input.is_invariant != output.is_invariant) {
+    add(Severity::Error, "link", stage, input.position,
+        fmt::format("input {} is {}invariant, and the output of the {} stage is {}invariant; before GLSL 4.20 and GLSL "
+                    "ES 3.00 both must be",
+                    named(input), input.is_invariant ? "" : "not ", before, output.is_invariant ? "" : "not "));
+  }
+}
+
 void Checker::check_members(std::size_t stage, const Declaration &input, const Declaration &output)
 {
   const std::string_view before = to_string(c_.sources[stage - 1]->stage());
@@ -469,6 +519,7 @@ void Checker::check_varyings()
         }
         continue;
       }
+      check_qualifiers(i, input, *output);
       if (output->location != input.location || output->component != input.component) {
         continue;
       }

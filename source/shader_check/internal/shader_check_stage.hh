@@ -68,6 +68,10 @@ struct Declaration {
   bool is_used = false;
   /** Members of a block of inputs or outputs: whether the stage uses this or another member. */
   bool is_block_used = false;
+  /** Inputs and outputs, from the syntax tree only. */
+  bool is_flat = false;
+  bool is_no_perspective = false;
+  bool is_invariant = false;
   bool is_push_constant = false;
   /** Whether it is an image, which OpenGL numbers apart from textures. */
   bool is_image = false;

@@ -216,6 +216,9 @@ void add_varying(Declaration declaration, const TIntermSymbol &symbol, const Sta
   const glslang::TQualifier &qualifier = type.getQualifier();
   const bool is_arrayed = qualifier.isArrayedIo(language);
   declaration.is_captured = qualifier.hasXfbOffset();
+  declaration.is_flat = qualifier.flat;
+  declaration.is_no_perspective = qualifier.nopersp;
+  declaration.is_invariant = qualifier.invariant;
   const auto has_location = [](const glslang::TTypeLoc &entry) { return entry.type->getQualifier().hasLocation(); };
   const bool is_block = type.getBasicType() == glslang::EbtBlock;
   // The elements of other arrays of blocks have locations of their own.
