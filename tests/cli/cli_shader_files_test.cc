@@ -205,6 +205,40 @@ TEST_F(ShaderFilesTest, StagesThatADriverDoesNotLinkAreErrors)
                          "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", "opengl"));
 }
 
+TEST_F(ShaderFilesTest, ALevelCommentIsReadOrNamed)
+{
+  const auto out_of = [&](const std::string &file, const std::string &line) {
+    write("x.frag", "#version 450\n" + file +
+                        "\nlayout(location = 0) out vec4 c;\nlayout(binding = 0) uniform sampler2D t;" + line +
+                        "\nvoid main() { c = vec4(1); }\n");
+    return check("x.frag").out;
+  };
+  for (const std::string start :
+       {"// shader-check: ", "//shader-check:", "//  shader-check :  ", "/* shader-check:\t"}) {
+    const std::string end = start.starts_with("/*") ? " */" : "";
+    for (const std::string equals : {"=", " = ", "= "}) {
+      const std::string out = out_of(start + "unused-binding" + equals + "off" + end, "");
+      EXPECT_NE(out.find(": 0 errors, 0 warnings"), std::string::npos) << start << equals << out;
+      const std::string error = out_of(start + "unused-binding" + equals + "error, why" + end, "");
+      EXPECT_NE(error.find("x.frag:4: error: "), std::string::npos) << start << equals << error;
+    }
+    const std::string out = out_of("", start + "unused-binding, why" + end);
+    EXPECT_NE(out.find(": 0 errors, 0 warnings"), std::string::npos) << start << out;
+    for (const auto &[comment, message] :
+         {std::pair("unused-bindings=off", "there is no rule 'unused-bindings'"),
+          {"unused-bindings", "there is no rule 'unused-bindings'"},
+          {"unused-binding=none", "there is no level 'none'; there are off, warning and error"},
+          {"unused-binding =", "there is no level ''"},
+          {"link=off", "rule 'link' has no level"}}) {
+      const std::string fault = out_of(start + comment + end, "");
+      EXPECT_NE(fault.find(fmt::format("x.frag:2: warning: {}", message)), std::string::npos)
+          << start << comment << fault;
+      EXPECT_NE(fault.find("[level-comment]"), std::string::npos) << fault;
+      EXPECT_NE(fault.find("[unused-binding]"), std::string::npos) << fault;
+    }
+  }
+}
+
 TEST_F(ShaderFilesTest, TheLastDefinitionOfAMacroIsTheOneThatCounts)
 {
   write("n.frag", fragment_head + "#if N != 2\noops\n#endif\nvoid main() { c = vec4(N); }\n");

@@ -138,6 +138,9 @@ void Checker::compile(std::unique_ptr<StageSource> source)
   StageSource &added = *c_.sources.back();
   check_byte_order_mark(added);
   check_version(added);
+  for (const SourceLines::CommentFault &fault : c_.lines[stage].comment_faults()) {
+    add(Severity::Warning, "level-comment", stage, fault.position, fault.text);
+  }
   if (check_bytes(added)) {
     // glslang's messages would only follow from it.
     is_compiled_ = false;
