@@ -582,14 +582,44 @@ TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
   wrong["programs"][0] = {{"files", {"lit.vert"}}, {"permutations", {{"A", many}, {"B", many}}}};
   rejected(wrong, "/programs/0/permutations/B: the program has more than 65536 permutations");
   rejected(nlohmann::json::array(), "the whole: an object is needed");
-  write("m.json", "{\"programs\": [}");
-  EXPECT_NE(check("--manifest m.json").err.find("line 1"), std::string::npos);
+  write("m.json", "{\"programs\":\n [}");
+  EXPECT_NE(check("--manifest m.json").err.find("m.json:2: no JSON: "), std::string::npos);
+  write("m.json", "");
+  EXPECT_NE(check("--manifest m.json").err.find("m.json:1: no JSON: "), std::string::npos);
   for (const nlohmann::json &target : schema["$defs"]["target"]["enum"]) {
     nlohmann::json known = right;
     known["targets"] = nlohmann::json::array({target});
     write("m.json", known.dump());
     EXPECT_EQ(check("--manifest m.json").err, "") << target;
   }
+}
+
+TEST_F(ShaderFilesTest, NothingInAManifestIsLost)
+{
+  write("lit.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
+  write("lit.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  write("bad.frag", fragment_head + "void main() { oops; }\n");
+  write("m.json", R"({"programs": [{"files": ["lit.vert", "lit.frag"]}, {"files": ["lit.vert", "bad.frag"]},
+    {"name": "lit", "files": ["lit.vert"]}]})");
+  const Finished three = check("--manifest m.json");
+  EXPECT_NE(three.out.find("3 programs, 3 variants"), std::string::npos) << three.out;
+  EXPECT_NE(three.out.find("(lit 2; "), std::string::npos) << three.out;
+  for (const std::string twice :
+       {"{\"programs\": [{\"files\": [\"bad.frag\"]}],\n\"programs\": [{\"files\": [\"lit.frag\"]}]}",
+        "{\"programs\": [{\"files\": [\"bad.frag\"],\n\"files\": [\"lit.frag\"]}]}"}) {
+    write("m.json", twice);
+    const Finished finished = check("--manifest m.json");
+    EXPECT_EQ(finished.status, 1) << twice;
+    EXPECT_NE(finished.err.find("m.json:2: an object has the key '"), std::string::npos) << finished.err;
+  }
+  write("n.frag", fragment_head + "#ifndef N\noops\n#endif\nN void main() { c = vec4(1); }\n");
+  write("m.json", R"({"programs": [{"files": ["n.frag"], "permutations": {"N": ["", "/**/"]}}]})");
+  const Finished empty = check("--manifest m.json");
+  EXPECT_EQ(empty.status, 0) << empty.out << empty.err;
+  write("through.sh", "#!/bin/sh\ncat m.json | '" GNOMON_PROGRAM "' \"$@\"\n");
+  std::filesystem::permissions(folder / "through.sh", std::filesystem::perms::owner_all);
+  const Finished piped = run("shaders check --manifest /dev/stdin", folder / "through.sh");
+  EXPECT_EQ(piped.status, 0) << piped.out << piped.err;
 }
 
 TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
