@@ -239,6 +239,42 @@ TEST_F(ShaderFilesTest, ALevelCommentIsReadOrNamed)
   }
 }
 
+TEST_F(ShaderFilesTest, OneNameHasOneKindInAllStages)
+{
+  const auto message = [&](const std::string &vertex, const std::string &fragment, const std::string &target) {
+    write("x.vert", "#version 450\n" + vertex + "\nvoid main() { gl_Position = " +
+                        (vertex.find("sampler") == std::string::npos ? "b.v" : "texture(t, vec2(0))") + "; }\n");
+    write("x.frag", "#version 450\nlayout(location = 0) out vec4 c;\n" + fragment + "\nvoid main() { c = " +
+                        (fragment.find("sampler") == std::string::npos ? "b.v" : "texture(t, vec3(0))") + "; }\n");
+    return check("x.vert x.frag --target " + target).out;
+  };
+  const std::string uniform = "layout(binding = 0) uniform B { vec4 v; } b;";
+  const std::string storage = "layout(binding = 1) buffer B { vec4 v; } b;";
+  for (const auto &[vertex, fragment, file] :
+       {std::tuple(uniform, storage, "x.frag:3"), {storage, uniform, "x.vert:2"}}) {
+    const std::string out = message(vertex, fragment, "vulkan");
+    EXPECT_NE(out.find(std::string(file) + ": warning: 'B' is a storage block here"), std::string::npos) << out;
+    EXPECT_NE(out.find("[block-match]"), std::string::npos) << out;
+  }
+  const std::string out =
+      message("layout(binding = 0) uniform sampler2D t;", "layout(binding = 0) uniform samplerCube t;", "opengl");
+  EXPECT_NE(out.find("x.frag:3: error: texture 't' is samplerCube here and sampler2D in an earlier stage [link]"),
+            std::string::npos)
+      << out;
+  // UTF-32, of both orders of bytes, with and without a mark.
+  for (const bool has_mark : {true, false}) {
+    for (const bool is_little : {true, false}) {
+      std::string wide = !has_mark ? "" : is_little ? std::string("\xFF\xFE\0\0", 4) : std::string("\0\0\xFE\xFF", 4);
+      for (const char c : std::string("#version 450\n")) {
+        wide += is_little ? std::string{c, 0, 0, 0} : std::string{0, 0, 0, c};
+      }
+      write("w.frag", wide);
+      const Finished finished = check("w.frag");
+      EXPECT_EQ(finished.out.find("w.frag:1: error: the file is text in UTF-32"), 0U) << finished.out;
+    }
+  }
+}
+
 TEST_F(ShaderFilesTest, TheLastDefinitionOfAMacroIsTheOneThatCounts)
 {
   write("n.frag", fragment_head + "#if N != 2\noops\n#endif\nvoid main() { c = vec4(N); }\n");

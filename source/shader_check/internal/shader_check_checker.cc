@@ -250,14 +250,20 @@ bool Checker::check_bytes(const StageSource &source)
       continue;
     }
     is_any = true;
-    // Every second byte of ASCII is 0 in UTF-16.
+    // Of ASCII, every second byte is 0 in UTF-16, and three of four in UTF-32.
+    const std::string_view first = file.text.substr(0, 4);
+    const std::string_view mark("\xFF\xFE\0\0\xFE\xFF", 6);
+    const bool is_utf32 =
+        first == mark.substr(0, 4) || first == mark.substr(2) ||
+        (first.size() == 4 && std::ranges::count(first, '\0') == 3 && (first[0] != '\0') != (first[3] != '\0'));
     const bool is_utf16 =
         file.text.starts_with("\xFF\xFE") || file.text.starts_with("\xFE\xFF") ||
         (zero <= 1 && file.text.size() > zero + 2 && file.text[zero + 1] != '\0' && file.text[zero + 2] == '\0');
     const std::string_view before = file.text.substr(0, zero);
     add(Severity::Error, "compile", source.files()[file.index], 1 + int(std::ranges::count(before, '\n')),
-        is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
-                 : "the file has a NUL byte (0x00) here, which GLSL does not allow");
+        is_utf32   ? "the file is text in UTF-32; save it as UTF-8 without a byte-order mark"
+        : is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
+                   : "the file has a NUL byte (0x00) here, which GLSL does not allow");
   }
   return is_any;
 }
@@ -282,6 +288,9 @@ void Checker::link_stages()
   c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
   check_findings();
   check_versions();
+  if (is_vulkan(options_.target) && !settings_.is_own) {
+    check_kinds();
+  }
   check_slots();
   check_varyings();
   if (!is_linked && may_differ(link_messages(log))) {
@@ -372,6 +381,23 @@ std::pair<std::size_t, SourcePosition> Checker::place_of(std::string_view text) 
   return {stages_in_question.front(), SourcePosition()};
 }
 
+void Checker::check_kinds()
+{
+  for (std::size_t i = 0; i < c_.facts.size(); i++) {
+    for (std::size_t j = 0; j < c_.facts.size(); j++) {
+      for (const Declaration &block : c_.facts[i].storage_blocks) {
+        const std::vector<Declaration> &others = c_.facts[j].uniform_blocks;
+        const auto other = std::ranges::find(others, block.name, &Declaration::name);
+        if (i != j && other != others.end() && !other->is_push_constant) {
+          add(Severity::Warning, "block-match", i, block.position,
+              fmt::format("'{}' is a storage block here and a uniform block in the {} stage", block.name,
+                          to_string(c_.sources[j]->stage())));
+        }
+      }
+    }
+  }
+}
+
 void Checker::check_findings()
 {
   for (std::size_t i = 0; i < c_.facts.size(); i++) {
@@ -401,6 +427,13 @@ void Checker::check_slots()
       const bool is_same_slot = declaration.slot >= 0 && declaration.slot == other.declaration->slot &&
                                 declaration.set == other.declaration->set;
       if (declaration.name == other.declaration->name && kind == other.kind) {
+        const std::string type = type_name(declaration.type);
+        const std::string earlier = type_name(other.declaration->type);
+        // Vulkan connects textures by number. glslang's message about this names no stage and no type.
+        if (kind == gpu::BindingKind::Texture && type != earlier && !is_vulkan(options_.target)) {
+          add(Severity::Error, "link", stage, declaration.position,
+              fmt::format("texture '{}' is {} here and {} in an earlier stage", declaration.name, type, earlier));
+        }
         if (!is_same_slot && !is_push_constant) {
           add(Severity::Error, "slot", stage, declaration.position,
               fmt::format("{} '{}' has slot {} here and {} in an earlier stage", to_string(kind), declaration.name,

@@ -63,6 +63,8 @@ class Checker {
   void add_block_differences(const std::vector<LinkMessage> &errors);
   /** The stage that a link error is about, and the first declaration in it that the error names. */
   [[nodiscard]] std::pair<std::size_t, SourcePosition> place_of(std::string_view text) const;
+  /** Blocks of one name that are uniform in one stage and storage in another, about which glslang is silent. */
+  void check_kinds();
   void check_findings();
   void check_slots();
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
