@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 namespace gnomon::cli {
@@ -69,11 +71,14 @@ class ManifestValue {
     }
     return value_;
   }
-  /** A string or number, as a define has it. */
+  /** A string or number, as a define has it. The string may be empty. */
   std::string word() const
   {
+    if (value_.is_string()) {
+      return value_;
+    }
     if (!value_.is_number_integer() && !value_.is_boolean()) {
-      return text();
+      fail("a string or an integer is needed");
     }
     return value_.is_boolean() ? (value_.get<bool>() ? "1" : "0") : value_.dump();
   }
@@ -254,9 +259,14 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
     programs.fail("at least one program is needed");
   }
   root.require_known_keys();
+  std::set<std::string> names;
   for (ManifestValue value : programs.list()) {
     value.require_object();
-    const shader_check::Program program = program_in(value, folder);
+    shader_check::Program program = program_in(value, folder);
+    const std::string name = program.name;
+    for (int number = 2; !names.insert(program.name).second; number++) {
+      program.name = fmt::format("{} {}", name, number);
+    }
     const ManifestValue own_targets = value.at("targets");
     const std::vector<std::string> own_defines = defines_in(value.at("defines"));
     const std::vector<std::vector<std::string>> permutations = permutations_in(value.at("permutations"));
@@ -276,6 +286,43 @@ ShaderManifest manifest_in(const json &document, const fs::path &folder)
 
 }  // namespace
 
+/** \a path and the line of \a text in which the byte \a at is. */
+static std::string place_of(const fs::path &path, std::string_view text, std::size_t at)
+{
+  return fmt::format("{}:{}", path.string(), 1 + std::ranges::count(text.substr(0, at), '\n'));
+}
+
+/** \throws std::runtime_error for no JSON, and for an object that has one key twice, whose first value would be lost */
+static json parse_manifest(const fs::path &path, std::istream &stream)
+{
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::istringstream source(text);
+  std::vector<std::set<std::string>> open;
+  const auto note = [&](int, json::parse_event_t event, const json &value) {
+    if (event == json::parse_event_t::object_start) {
+      open.emplace_back();
+    }
+    else if (event == json::parse_event_t::object_end) {
+      open.pop_back();
+    }
+    else if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
+      throw std::runtime_error(fmt::format("{}: an object has the key '{}' twice",
+                                           place_of(path, text, std::size_t(source.tellg())),
+                                           value.get<std::string>()));
+    }
+    return true;
+  };
+  try {
+    return json::parse(source, note);
+  }
+  catch (const json::parse_error &error) {
+    const std::string_view what = error.what();
+    const std::size_t detail = what.find(" - ");
+    throw std::runtime_error(fmt::format("{}: no JSON: {}", place_of(path, text, error.byte == 0 ? 0 : error.byte - 1),
+                                         detail == std::string_view::npos ? what : what.substr(detail + 3)));
+  }
+}
+
 ShaderManifest read_shader_manifest(const fs::path &path)
 {
   output::require_readable(path, path.string() + ": ");
@@ -283,8 +330,11 @@ ShaderManifest read_shader_manifest(const fs::path &path)
   if (!stream) {
     throw std::runtime_error(fmt::format("{}: the file cannot be read", path.string()));
   }
+  const json document = parse_manifest(path, stream);
+  // A stream, such as that of a shell's <(…), lies in no folder of shaders.
+  const bool is_stream = path.string().starts_with("/dev/") || path.string().starts_with("/proc/");
   try {
-    return manifest_in(json::parse(stream), path.parent_path());
+    return manifest_in(document, is_stream ? fs::path() : path.parent_path());
   }
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));

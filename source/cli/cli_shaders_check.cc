@@ -10,10 +10,13 @@
 #include "scene_types.hh"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
-#include <iostream>
+#include <cstdio>
 #include <iterator>
 #include <set>
+#include <stdexcept>
+#include <system_error>
 
 namespace gnomon::cli {
 
@@ -274,11 +277,17 @@ fs::path output_path(const CheckArguments &arguments, const std::string &file)
                                      : fs::path(arguments.output);
 }
 
-/** \throws output::Conflict if an output would replace an input or another output */
-void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
+/**
+ * The files that are known before shaders are read. \throws output::Conflict if an output would replace an input or
+ * another output
+ */
+output::Roles roles_of(const std::vector<ShaderManifest::Entry> &entries, const CheckArguments &arguments)
 {
   output::Roles roles;
   roles.add_input(arguments.manifest, "--manifest");
+  for (const std::string &file : arguments.files) {
+    roles.add_input(file, "a shader");
+  }
   for (const ShaderManifest::Entry &entry : entries) {
     for (const shader_check::Program::File &file : entry.program.files) {
       roles.add_input(file.path, "a shader");
@@ -296,6 +305,7 @@ void require_outputs(const std::vector<ShaderManifest::Entry> &entries, const Ch
   }
   roles.add_output(arguments.depfile, "-MF");
   keep_text_from(roles);
+  return roles;
 }
 
 /** Writes the SPIR-V of \a checks: of one file to the path of -o, of more into that folder. */
@@ -425,6 +435,19 @@ void write_dependencies(std::span<const shader_check::ProgramCheck> checks, cons
                 read);
 }
 
+/** The text on standard input, as far as a stage may have it. \throws std::runtime_error */
+std::string read_standard_input()
+{
+  // A longer text is refused, so that its rest is not needed.
+  std::string text(shader_check::stage_bytes_max + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), stdin));
+  if (std::ferror(stdin) != 0) {
+    throw std::runtime_error(
+        fmt::format("--stdin: standard input cannot be read: {}", std::generic_category().message(errno)));
+  }
+  return text;
+}
+
 /** Checks FILES, or the programs of --manifest. */
 ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
 {
@@ -435,10 +458,9 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   for (ShaderManifest::Entry &entry : project.entries) {
     add_defines(entry.program.defines, arguments.defines);
   }
-  require_outputs(project.entries, arguments);
+  output::Roles roles = roles_of(project.entries, arguments);
   shader_check::FolderFiles folder{fs::path()};
-  const std::string input =
-      arguments.input.empty() ? std::string() : std::string(std::istreambuf_iterator<char>(std::cin), {});
+  const std::string input = arguments.input.empty() ? std::string() : read_standard_input();
   const gpu::ShaderFiles files = [&](std::string_view path) {
     return !arguments.input.empty() && path == arguments.input ? std::optional<std::string_view>(input)
                                                                : folder.text(path);
@@ -454,6 +476,11 @@ ShaderReport check_files(const CheckArguments &arguments, bool &is_any_checked)
   const std::vector<ShaderJob> jobs = jobs_of(project, files, options, arguments);
   std::vector<shader_check::ProgramCheck> checks;
   ShaderReport report = report_of(jobs, files, arguments, &checks);
+  for (const shader_check::ProgramCheck &check : checks) {
+    for (const std::string &path : check.files) {
+      roles.add_input(path, "an include");
+    }
+  }
   if (!arguments.output.empty()) {
     add_missing_output(project.entries, checks, arguments, report);
   }
@@ -502,8 +529,17 @@ void require_usage(const CheckArguments &a)
 
 Status check(CheckArguments arguments)
 {
-  if (!arguments.input.empty() && std::ranges::find(arguments.files, arguments.input) == arguments.files.end()) {
-    arguments.files.push_back(arguments.input);
+  if (!arguments.input.empty()) {
+    const std::optional<output::FileId> input = output::file_id(arguments.input);
+    const auto file = std::ranges::find_if(arguments.files, [&](const std::string &path) {
+      return path == arguments.input || (input && output::file_id(path) == input);
+    });
+    if (file == arguments.files.end()) {
+      arguments.files.push_back(arguments.input);
+    }
+    else {
+      arguments.input = *file;
+    }
   }
   require_usage(arguments);
   bool is_any_checked = true;

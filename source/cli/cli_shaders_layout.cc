@@ -194,7 +194,7 @@ std::string assertions_of(const HostStruct &host, const ProgramBinding &block, s
     for (const ProgramBinding::Array &array : inner) {
       place = element.find('[', place);
       const std::string whole = object + element.substr(0, place);
-      add(fmt::format("sizeof({}) >= {}", whole, array.count * array.stride_bytes), member.name);
+      add(fmt::format("sizeof({}) == {}", whole, array.count * array.stride_bytes), member.name);
       add(fmt::format("sizeof({}[0]) == {}", whole, array.stride_bytes), member.name);
       place++;
     }

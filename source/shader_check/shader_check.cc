@@ -81,11 +81,12 @@ namespace {
 
 using Reads = CheckRule::Reads;
 
-constexpr std::array<CheckRule, 20> rules = {{
+constexpr std::array<CheckRule, 21> rules = {{
     {"stage", "the name of a file, or an option, gives its stage"},
     {"include", "included files and the files of stages exist"},
     {"compile", "glslang accepts the stage"},
     {"compile-warning", "glslang has no warning about the stage", true},
+    {"level-comment", "a comment about a rule names one, and a level", true},
     {"link", "glslang accepts the stages together"},
     {"limit", "the check of a program ends within its limits of time and memory"},
     {"spirv", "SPIRV-Tools accepts glslang's output for the stage", true},

@@ -95,6 +95,186 @@ TEST_F(ShaderFilesTest, AnySubsetOfAProgramsStagesIsRight)
   EXPECT_EQ(check("q_tesc.glsl q.frag --target vulkan").status, 0) << "they are not linked across a gap";
 }
 
+struct Connection {
+  std::string output;
+  std::string input;
+  std::string read;
+  /** The line of the mistake and its rule; line 0: there is none. */
+  int line = 0;
+  std::string rule{};
+};
+
+TEST_F(ShaderFilesTest, MembersOfBlocksAndStructsAreConnectedInVulkan)
+{
+  const std::string pair = "struct S {\nvec4 a;\nvec4 b;\n};\n";
+  const std::string other_pair = "struct S {\nvec4 a;\nvec2 b;\n};\n";
+  const std::string array = "struct S {\nvec4 a;\nvec4 b[2];\n};\n";
+  const std::vector<Connection> connections = {
+      {"layout(location = 0) out B { vec4 x; vec4 y; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;",
+       "i.y"},
+      {"layout(location = 0) out B { vec4 x; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;", "i.x + i.y",
+       4, "missing-varying"},
+      // A member that is not read needs no output.
+      {"layout(location = 0) out B { vec4 x; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;", "i.x"},
+      {"layout(location = 0) out B { vec4 x; vec2 y; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;",
+       "i.y", 4, "varying-type"},
+      {"out B { layout(location = 0) vec4 x; layout(location = 2) vec4 y; } o;",
+       "in B {\nlayout(location = 0) vec4 x;\nlayout(location = 1) vec4 y;\n} i;", "i.y", 4, "missing-varying"},
+      // Names of blocks and members do not count, and a member may be connected to a variable.
+      {"layout(location = 1) out Other { vec4 x; mat2 m; vec4 y; } o;",
+       "layout(location = 1) in vec4 x;\nlayout(location = 2) in B {\nmat2 m;\nvec4 z;\n} i;", "x + i.z + i.m[0].xyxy"},
+      {"layout(location = 1) out Other { vec4 x; mat2 m; vec4 y; } o;",
+       "layout(location = 1) in vec4 x;\nlayout(location = 4) in B {\nvec2 z;\n} i;", "x + i.z.xyxy", 4,
+       "varying-type"},
+      {pair + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a + s.b"},
+      {other_pair + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 4, "varying-type"},
+      {array + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 4, "varying-type"},
+      {"struct S { vec4 a; };\nlayout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 6,
+       "varying-type"},
+      {pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[2];\n} i;",
+       "i.s[1].b"},
+      {other_pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[2];\n} i;",
+       "i.s[1].b", 4, "varying-type"},
+      {pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[3];\n} i;",
+       "i.s[1].b", 3, "varying-type"},
+  };
+  for (const Connection &one : connections) {
+    write("x.vert", "#version 450\n" + one.output + "\nvoid main() { gl_Position = vec4(0); }\n");
+    write("x.frag",
+          "#version 450\n" + one.input + "\nlayout(location = 0) out vec4 c;\nvoid main() { c = " + one.read + "; }\n");
+    const Finished finished = check("x.vert x.frag --target vulkan");
+    EXPECT_EQ(finished.status, one.line == 0 ? 0 : 1) << one.output << one.input << finished.out;
+    if (one.line > 0) {
+      const std::size_t at = finished.out.find(fmt::format("x.frag:{}: error: ", one.line));
+      ASSERT_NE(at, std::string::npos) << one.output << one.input << finished.out;
+      EXPECT_NE(finished.out.substr(at, finished.out.find('\n', at) - at).find("[" + one.rule + "]"), std::string::npos)
+          << finished.out;
+    }
+  }
+}
+
+TEST_F(ShaderFilesTest, StagesThatADriverDoesNotLinkAreErrors)
+{
+  const auto is_linked = [&](const std::string &vertex, const std::string &fragment, const std::string &target) {
+    write("x.vert", vertex);
+    write("x.frag", fragment);
+    const Finished finished = check("x.vert x.frag --target " + target);
+    EXPECT_TRUE(finished.status == 0 || finished.out.find("[link]") != std::string::npos) << finished.out;
+    return finished.status == 0;
+  };
+  // As Mesa 22 links them, except that it takes `smooth` for another qualifier than none before 4.40.
+  for (const int version : {130, 150, 330, 400, 430, 440, 450, 460}) {
+    for (const std::string output : {"", "smooth ", "flat ", "noperspective "}) {
+      for (const std::string input : {"", "smooth ", "flat ", "noperspective "}) {
+        const auto plain = [](const std::string &word) { return word == "smooth " ? std::string() : word; };
+        const std::string head = fmt::format("#version {}\n", version);
+        EXPECT_EQ(is_linked(head + output + "out vec4 v;\nvoid main() { gl_Position = v = vec4(1); }\n",
+                            head + input + "in vec4 v;\nout vec4 c;\nvoid main() { c = v; }\n", "opengl"),
+                  version >= 440 || plain(output) == plain(input))
+            << version << output << input;
+      }
+    }
+  }
+  for (const int version : {120, 130, 330, 410, 420, 450}) {
+    const std::string head = fmt::format("#version {}\n", version);
+    const bool is_old = version < 130;
+    EXPECT_EQ(is_linked(head + "invariant " + (is_old ? "varying" : "out") +
+                            " vec4 v;\nvoid main() { gl_Position = v = vec4(1); }\n",
+                        head + (is_old ? "varying vec4 v;\n" : "in vec4 v;\nout vec4 c;\n") + "void main() { " +
+                            (is_old ? "gl_FragColor" : "c") + " = v; }\n",
+                        "opengl"),
+              version >= 420)
+        << version;
+  }
+  const std::map<std::string, std::pair<std::string, std::string>> es = {
+      {"", {"varying vec4 v;\n", "gl_FragColor"}},
+      {"#version 300 es\n", {"in vec4 v;\nout vec4 c;\n", "c"}},
+      {"#version 310 es\n", {"in vec4 v;\nout vec4 c;\n", "c"}}};
+  for (const auto &[before, vertex] : es) {
+    for (const auto &[after, fragment] : es) {
+      EXPECT_EQ(is_linked(before + (before.empty() ? "varying" : "out") +
+                              " vec4 v;\nvoid main() { gl_Position = v = vec4(1.0); }\n",
+                          after + "precision mediump float;\n" + fragment.first + "void main() { " + fragment.second +
+                              " = v; }\n",
+                          "es"),
+                before == after)
+          << before << after;
+    }
+  }
+  EXPECT_FALSE(is_linked("#version 300 es\nvoid main() { gl_Position = vec4(1.0); }\n",
+                         "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", "opengl"));
+}
+
+TEST_F(ShaderFilesTest, ALevelCommentIsReadOrNamed)
+{
+  const auto out_of = [&](const std::string &file, const std::string &line) {
+    write("x.frag", "#version 450\n" + file +
+                        "\nlayout(location = 0) out vec4 c;\nlayout(binding = 0) uniform sampler2D t;" + line +
+                        "\nvoid main() { c = vec4(1); }\n");
+    return check("x.frag").out;
+  };
+  for (const std::string start :
+       {"// shader-check: ", "//shader-check:", "//  shader-check :  ", "/* shader-check:\t"}) {
+    const std::string end = start.starts_with("/*") ? " */" : "";
+    for (const std::string equals : {"=", " = ", "= "}) {
+      const std::string out = out_of(start + "unused-binding" + equals + "off" + end, "");
+      EXPECT_NE(out.find(": 0 errors, 0 warnings"), std::string::npos) << start << equals << out;
+      const std::string error = out_of(start + "unused-binding" + equals + "error, why" + end, "");
+      EXPECT_NE(error.find("x.frag:4: error: "), std::string::npos) << start << equals << error;
+    }
+    const std::string out = out_of("", start + "unused-binding, why" + end);
+    EXPECT_NE(out.find(": 0 errors, 0 warnings"), std::string::npos) << start << out;
+    for (const auto &[comment, message] :
+         {std::pair("unused-bindings=off", "there is no rule 'unused-bindings'"),
+          {"unused-bindings", "there is no rule 'unused-bindings'"},
+          {"unused-binding=none", "there is no level 'none'; there are off, warning and error"},
+          {"unused-binding =", "there is no level ''"},
+          {"link=off", "rule 'link' has no level"}}) {
+      const std::string fault = out_of(start + comment + end, "");
+      EXPECT_NE(fault.find(fmt::format("x.frag:2: warning: {}", message)), std::string::npos)
+          << start << comment << fault;
+      EXPECT_NE(fault.find("[level-comment]"), std::string::npos) << fault;
+      EXPECT_NE(fault.find("[unused-binding]"), std::string::npos) << fault;
+    }
+  }
+}
+
+TEST_F(ShaderFilesTest, OneNameHasOneKindInAllStages)
+{
+  const auto message = [&](const std::string &vertex, const std::string &fragment, const std::string &target) {
+    write("x.vert", "#version 450\n" + vertex + "\nvoid main() { gl_Position = " +
+                        (vertex.find("sampler") == std::string::npos ? "b.v" : "texture(t, vec2(0))") + "; }\n");
+    write("x.frag", "#version 450\nlayout(location = 0) out vec4 c;\n" + fragment + "\nvoid main() { c = " +
+                        (fragment.find("sampler") == std::string::npos ? "b.v" : "texture(t, vec3(0))") + "; }\n");
+    return check("x.vert x.frag --target " + target).out;
+  };
+  const std::string uniform = "layout(binding = 0) uniform B { vec4 v; } b;";
+  const std::string storage = "layout(binding = 1) buffer B { vec4 v; } b;";
+  for (const auto &[vertex, fragment, file] :
+       {std::tuple(uniform, storage, "x.frag:3"), {storage, uniform, "x.vert:2"}}) {
+    const std::string out = message(vertex, fragment, "vulkan");
+    EXPECT_NE(out.find(std::string(file) + ": warning: 'B' is a storage block here"), std::string::npos) << out;
+    EXPECT_NE(out.find("[block-match]"), std::string::npos) << out;
+  }
+  const std::string out =
+      message("layout(binding = 0) uniform sampler2D t;", "layout(binding = 0) uniform samplerCube t;", "opengl");
+  EXPECT_NE(out.find("x.frag:3: error: texture 't' is samplerCube here and sampler2D in an earlier stage [link]"),
+            std::string::npos)
+      << out;
+  // UTF-32, of both orders of bytes, with and without a mark.
+  for (const bool has_mark : {true, false}) {
+    for (const bool is_little : {true, false}) {
+      std::string wide = !has_mark ? "" : is_little ? std::string("\xFF\xFE\0\0", 4) : std::string("\0\0\xFE\xFF", 4);
+      for (const char c : std::string("#version 450\n")) {
+        wide += is_little ? std::string{c, 0, 0, 0} : std::string{0, 0, 0, c};
+      }
+      write("w.frag", wide);
+      const Finished finished = check("w.frag");
+      EXPECT_EQ(finished.out.find("w.frag:1: error: the file is text in UTF-32"), 0U) << finished.out;
+    }
+  }
+}
+
 TEST_F(ShaderFilesTest, TheLastDefinitionOfAMacroIsTheOneThatCounts)
 {
   write("n.frag", fragment_head + "#if N != 2\noops\n#endif\nvoid main() { c = vec4(N); }\n");
@@ -242,6 +422,29 @@ TEST_F(ShaderFilesTest, DepfileNamesWhatWasRead)
   EXPECT_EQ(read("c.d"), text);
   EXPECT_EQ(check("a.frag -MF d.d").status, 2) << "no target";
   EXPECT_EQ(check("a.frag -MD -o a.spv").status, 2) << "no depfile";
+}
+
+TEST_F(ShaderFilesTest, NoOutputReplacesAnInclude)
+{
+  const std::string text = "vec4 one() { return vec4(1); }\n";
+  write_file("lib/one.glsl", text);
+  write("a.frag", fragment_head + "#include \"one.glsl\"\nvoid main() { c = one(); }\n");
+  write("m.json", R"({"include_folders": ["lib"], "programs": [{"files": ["a.frag"]}]})");
+  std::filesystem::create_symlink("lib/one.glsl", folder / "link.spv");
+  std::filesystem::create_hard_link(folder / "lib/one.glsl", folder / "hard.spv");
+  for (const std::string arguments :
+       {"a.frag -I lib -o lib/one.glsl", "a.frag -I lib -o ./lib/../lib/one.glsl", "a.frag -I lib -o link.spv",
+        "a.frag -I lib -o hard.spv", "a.frag -I lib -o a.spv -MD -MF lib/one.glsl", "a.frag -I lib -MF link.spv -MT t",
+        "--manifest m.json -MF lib/one.glsl -MT t", "a.frag -I lib --cache cache -o lib/one.glsl",
+        "a.frag -I lib --cache cache -o lib/one.glsl"}) {
+    const Finished finished = check(arguments + " --target vulkan");
+    EXPECT_EQ(finished.status, 2) << arguments << finished.out;
+    EXPECT_NE(finished.err.find("would replace an include"), std::string::npos) << arguments << finished.err;
+    EXPECT_NE(finished.err.find("lib/one.glsl"), std::string::npos) << arguments << finished.err;
+    EXPECT_EQ(read("lib/one.glsl"), text) << arguments;
+    write("lib/one.glsl", text);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.spv")) << "another output is not written either";
 }
 
 TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
@@ -415,14 +618,44 @@ TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
   wrong["programs"][0] = {{"files", {"lit.vert"}}, {"permutations", {{"A", many}, {"B", many}}}};
   rejected(wrong, "/programs/0/permutations/B: the program has more than 65536 permutations");
   rejected(nlohmann::json::array(), "the whole: an object is needed");
-  write("m.json", "{\"programs\": [}");
-  EXPECT_NE(check("--manifest m.json").err.find("line 1"), std::string::npos);
+  write("m.json", "{\"programs\":\n [}");
+  EXPECT_NE(check("--manifest m.json").err.find("m.json:2: no JSON: "), std::string::npos);
+  write("m.json", "");
+  EXPECT_NE(check("--manifest m.json").err.find("m.json:1: no JSON: "), std::string::npos);
   for (const nlohmann::json &target : schema["$defs"]["target"]["enum"]) {
     nlohmann::json known = right;
     known["targets"] = nlohmann::json::array({target});
     write("m.json", known.dump());
     EXPECT_EQ(check("--manifest m.json").err, "") << target;
   }
+}
+
+TEST_F(ShaderFilesTest, NothingInAManifestIsLost)
+{
+  write("lit.vert", "#version 450\nvoid main() { gl_Position = vec4(0); }\n");
+  write("lit.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  write("bad.frag", fragment_head + "void main() { oops; }\n");
+  write("m.json", R"({"programs": [{"files": ["lit.vert", "lit.frag"]}, {"files": ["lit.vert", "bad.frag"]},
+    {"name": "lit", "files": ["lit.vert"]}]})");
+  const Finished three = check("--manifest m.json");
+  EXPECT_NE(three.out.find("3 programs, 3 variants"), std::string::npos) << three.out;
+  EXPECT_NE(three.out.find("(lit 2; "), std::string::npos) << three.out;
+  for (const std::string twice :
+       {"{\"programs\": [{\"files\": [\"bad.frag\"]}],\n\"programs\": [{\"files\": [\"lit.frag\"]}]}",
+        "{\"programs\": [{\"files\": [\"bad.frag\"],\n\"files\": [\"lit.frag\"]}]}"}) {
+    write("m.json", twice);
+    const Finished finished = check("--manifest m.json");
+    EXPECT_EQ(finished.status, 1) << twice;
+    EXPECT_NE(finished.err.find("m.json:2: an object has the key '"), std::string::npos) << finished.err;
+  }
+  write("n.frag", fragment_head + "#ifndef N\noops\n#endif\nN void main() { c = vec4(1); }\n");
+  write("m.json", R"({"programs": [{"files": ["n.frag"], "permutations": {"N": ["", "/**/"]}}]})");
+  const Finished empty = check("--manifest m.json");
+  EXPECT_EQ(empty.status, 0) << empty.out << empty.err;
+  write("through.sh", "#!/bin/sh\ncat m.json | '" GNOMON_PROGRAM "' \"$@\"\n");
+  std::filesystem::permissions(folder / "through.sh", std::filesystem::perms::owner_all);
+  const Finished piped = run("shaders check --manifest /dev/stdin", folder / "through.sh");
+  EXPECT_EQ(piped.status, 0) << piped.out << piped.err;
 }
 
 TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
@@ -441,6 +674,27 @@ TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
     EXPECT_EQ(json["messages"][0]["line"], 4);
   }
   EXPECT_EQ(run("shaders check --stdin shaders/near.glsl --stage frag", folder / "through.sh").status, 1);
+}
+
+TEST_F(ShaderFilesTest, StandardInputThatCannotBeReadIsNoEmptyShader)
+{
+  write("a.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  for (const std::string from : {"<&-", "0> written", "< ."}) {
+    write("through.sh", "#!/bin/sh\nexec '" + std::string(GNOMON_PROGRAM) + "' \"$@\" " + from + "\n");
+    std::filesystem::permissions(folder / "through.sh", std::filesystem::perms::owner_all);
+    const Finished finished = run("shaders check --stdin a.frag", folder / "through.sh");
+    EXPECT_EQ(finished.status, 1) << from << finished.out;
+    EXPECT_NE(finished.err.find("standard input cannot be read"), std::string::npos) << from << finished.err;
+  }
+  std::filesystem::create_directory(folder / "d");
+  std::filesystem::create_symlink("a.frag", folder / "link.frag");
+  for (const std::string path : {"./a.frag", "d/../a.frag", "link.frag"}) {
+    write("through.sh", "#!/bin/sh\necho oops | '" + std::string(GNOMON_PROGRAM) + "' \"$@\"\n");
+    const Finished finished = run("shaders check a.frag --stdin " + path, folder / "through.sh");
+    EXPECT_EQ(finished.status, 1);
+    EXPECT_NE(finished.out.find("1 programs"), std::string::npos) << path << finished.out;
+    EXPECT_EQ(finished.out.find("a.frag:1: error"), 0U) << path << finished.out;
+  }
 }
 
 TEST_F(ShaderFilesTest, LevelsAreOptions)

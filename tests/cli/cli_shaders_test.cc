@@ -448,7 +448,11 @@ TEST_F(ShadersTest, LayoutOfFilesIsThatOfStructsThatTheCompilerLaysOut)
   EXPECT_EQ(equal.status, 0) << equal.err;
   for (const auto &[from, to, member] : {std::tuple("float radius; ", "", "lights[0][0].radius"),
                                          {"lights[4][2]", "lights[3][2]", "lights[0][0].position"},
+                                         {"lights[4][2]", "lights[5][2]", "lights[0][0].position"},
+                                         {"lights[4][2]", "lights[4][3]", "lights[0][0].position"},
                                          {"weights[3]", "weights[2]", "weights"},
+                                         {"weights[3]", "weights[4]", "weights"},
+                                         {"cells[2][3]", "cells[2][4]", "lights[0][0].cells"},
                                          {"v[2]", "v[2], w[4]", "weights"},
                                          {"basis[3][4]", "basis[3][3]", "lights[0][0].basis"},
                                          {"alignas(16) ", "", "weights"},

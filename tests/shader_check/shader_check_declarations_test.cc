@@ -106,9 +106,15 @@ TEST(Declarations, OfMembersOfBlocksThatStagesShare)
   expect_declarations(Stage::Vertex,
                       "layout(location = 3) out Block {\nvec4 a;\nfloat b[3];\nlayout(location = 9) vec2 c;\n} block;\n"
                       "void main() { block.b[1] = 2.0; }\n",
-                      "out float[3] Block.b line 2 location 4+3\n"
-                      "out vec2 Block.c line 2 location 9+1 component 0+2\n"
-                      "out vec4 Block.a line 2 location 3+1 component 0+4\n");
+                      "out float[3] Block.b line 4 location 4+3\n"
+                      "out vec2 Block.c line 5 unused location 9+1 component 0+2\n"
+                      "out vec4 Block.a line 3 unused location 3+1 component 0+4\n");
+  expect_declarations(Stage::Geometry,
+                      "layout(points) in;\nlayout(points, max_vertices = 1) out;\n"
+                      "layout(location = 2) in Block {\nmat2 a;\nvec3 b;\n} block[];\n"
+                      "void main() { gl_Position = block[0].b.xyzz; EmitVertex(); }\n",
+                      "in mat2x2 Block.a line 5 unused location 2+2\n"
+                      "in vec3 Block.b line 6 location 4+1 component 0+3\n");
 }
 
 TEST(Declarations, OfVerticesAndPatches)

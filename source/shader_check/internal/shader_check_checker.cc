@@ -138,6 +138,9 @@ void Checker::compile(std::unique_ptr<StageSource> source)
   StageSource &added = *c_.sources.back();
   check_byte_order_mark(added);
   check_version(added);
+  for (const SourceLines::CommentFault &fault : c_.lines[stage].comment_faults()) {
+    add(Severity::Warning, "level-comment", stage, fault.position, fault.text);
+  }
   if (check_bytes(added)) {
     // glslang's messages would only follow from it.
     is_compiled_ = false;
@@ -247,14 +250,20 @@ bool Checker::check_bytes(const StageSource &source)
       continue;
     }
     is_any = true;
-    // Every second byte of ASCII is 0 in UTF-16.
+    // Of ASCII, every second byte is 0 in UTF-16, and three of four in UTF-32.
+    const std::string_view first = file.text.substr(0, 4);
+    const std::string_view mark("\xFF\xFE\0\0\xFE\xFF", 6);
+    const bool is_utf32 =
+        first == mark.substr(0, 4) || first == mark.substr(2) ||
+        (first.size() == 4 && std::ranges::count(first, '\0') == 3 && (first[0] != '\0') != (first[3] != '\0'));
     const bool is_utf16 =
         file.text.starts_with("\xFF\xFE") || file.text.starts_with("\xFE\xFF") ||
         (zero <= 1 && file.text.size() > zero + 2 && file.text[zero + 1] != '\0' && file.text[zero + 2] == '\0');
     const std::string_view before = file.text.substr(0, zero);
     add(Severity::Error, "compile", source.files()[file.index], 1 + int(std::ranges::count(before, '\n')),
-        is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
-                 : "the file has a NUL byte (0x00) here, which GLSL does not allow");
+        is_utf32   ? "the file is text in UTF-32; save it as UTF-8 without a byte-order mark"
+        : is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
+                   : "the file has a NUL byte (0x00) here, which GLSL does not allow");
   }
   return is_any;
 }
@@ -278,6 +287,10 @@ void Checker::link_stages()
   }
   c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
   check_findings();
+  check_versions();
+  if (is_vulkan(options_.target) && !settings_.is_own) {
+    check_kinds();
+  }
   check_slots();
   check_varyings();
   if (!is_linked && may_differ(link_messages(log))) {
@@ -368,6 +381,23 @@ std::pair<std::size_t, SourcePosition> Checker::place_of(std::string_view text) 
   return {stages_in_question.front(), SourcePosition()};
 }
 
+void Checker::check_kinds()
+{
+  for (std::size_t i = 0; i < c_.facts.size(); i++) {
+    for (std::size_t j = 0; j < c_.facts.size(); j++) {
+      for (const Declaration &block : c_.facts[i].storage_blocks) {
+        const std::vector<Declaration> &others = c_.facts[j].uniform_blocks;
+        const auto other = std::ranges::find(others, block.name, &Declaration::name);
+        if (i != j && other != others.end() && !other->is_push_constant) {
+          add(Severity::Warning, "block-match", i, block.position,
+              fmt::format("'{}' is a storage block here and a uniform block in the {} stage", block.name,
+                          to_string(c_.sources[j]->stage())));
+        }
+      }
+    }
+  }
+}
+
 void Checker::check_findings()
 {
   for (std::size_t i = 0; i < c_.facts.size(); i++) {
@@ -397,6 +427,13 @@ void Checker::check_slots()
       const bool is_same_slot = declaration.slot >= 0 && declaration.slot == other.declaration->slot &&
                                 declaration.set == other.declaration->set;
       if (declaration.name == other.declaration->name && kind == other.kind) {
+        const std::string type = type_name(declaration.type);
+        const std::string earlier = type_name(other.declaration->type);
+        // Vulkan connects textures by number. glslang's message about this names no stage and no type.
+        if (kind == gpu::BindingKind::Texture && type != earlier && !is_vulkan(options_.target)) {
+          add(Severity::Error, "link", stage, declaration.position,
+              fmt::format("texture '{}' is {} here and {} in an earlier stage", declaration.name, type, earlier));
+        }
         if (!is_same_slot && !is_push_constant) {
           add(Severity::Error, "slot", stage, declaration.position,
               fmt::format("{} '{}' has slot {} here and {} in an earlier stage", to_string(kind), declaration.name,
@@ -434,6 +471,73 @@ bool Checker::is_part(const Declaration &output, const Declaration &input) const
          output.type.scalar == input.type.scalar && input.type.vector_size < output.type.vector_size;
 }
 
+void Checker::check_versions()
+{
+  if (has_spirv(options_.target)) {
+    return;
+  }
+  const Version usual{options_.target == CheckTarget::Es ? 100 : 110, {}};
+  const Version first = version_in(c_.sources.front()->text()).value_or(usual);
+  for (std::size_t i = 1; i < c_.sources.size(); i++) {
+    const Version version = version_in(c_.sources[i]->text()).value_or(usual);
+    if (version.is_es() != first.is_es() || (version.is_es() && version.number != first.number)) {
+      const auto name_of = [](const Version &one) {
+        return fmt::format("{} {}", one.is_es() ? "GLSL ES" : "GLSL", one.number);
+      };
+      add(Severity::Error, "link", i, {0, version.line},
+          fmt::format("this stage is {}, and the {} stage {}; a driver does not link them", name_of(version),
+                      to_string(c_.sources.front()->stage()), name_of(first)));
+    }
+  }
+}
+
+void Checker::check_qualifiers(std::size_t stage, const Declaration &input, const Declaration &output)
+{
+  if (has_spirv(options_.target)) {
+    return;
+  }
+  // Rules are those of the newest version in the program.
+  Version version{110, {}};
+  for (const std::unique_ptr<StageSource> &source : c_.sources) {
+    const Version other = version_in(source->text()).value_or(version);
+    version = other.number > version.number ? other : version;
+  }
+  const std::string_view before = to_string(c_.sources[stage - 1]->stage());
+  const auto name_of = [](const Declaration &one) {
+    return one.is_flat ? "flat" : one.is_no_perspective ? "noperspective" : "smooth";
+  };
+  if ((version.is_es() || version.number < 440) && std::string_view(name_of(input)) != name_of(output)) {
+    add(Severity::Error, "link", stage, input.position,
+        fmt::format("input {} is {}, and the {} stage writes it {}; they may differ from GLSL 4.40 on", named(input),
+                    name_of(input), before, name_of(output)));
+  }
+  // GLSL ES 3.00 and GLSL 4.20 made `invariant` a matter of outputs.
+  if ((version.is_es() ? version.number < 300 : version.number < 420) && input.is_invariant != output.is_invariant) {
+    add(Severity::Error, "link", stage, input.position,
+        fmt::format("input {} is {}invariant, and the output of the {} stage is {}invariant; before GLSL 4.20 and GLSL "
+                    "ES 3.00 both must be",
+                    named(input), input.is_invariant ? "" : "not ", before, output.is_invariant ? "" : "not "));
+  }
+}
+
+void Checker::check_members(std::size_t stage, const Declaration &input, const Declaration &output)
+{
+  const std::string_view before = to_string(c_.sources[stage - 1]->stage());
+  const auto [read, written] = std::ranges::mismatch(
+      input.members, output.members, {}, [](const BlockMember &member) { return type_name(member.type); },
+      [](const BlockMember &member) { return type_name(member.type); });
+  if (read != input.members.end() && written != output.members.end()) {
+    add(Severity::Error, "varying-type", stage, read->position,
+        fmt::format("member '{}' of the input {} is {}, and the {} stage writes {}", read->name, named(input),
+                    type_name(read->type), before, type_name(written->type)));
+  }
+  else if (read != input.members.end() || written != output.members.end()) {
+    add(Severity::Error, "varying-type", stage, input.position,
+        fmt::format("input {} has {} members, and the {} stage writes {}", named(input), input.members.size(), before,
+                    output.members.size()));
+  }
+}
+
 void Checker::check_varyings()
 {
   for (std::size_t i = 1; i < c_.facts.size(); i++) {
@@ -445,23 +549,29 @@ void Checker::check_varyings()
     for (const Declaration &input : c_.facts[i].inputs) {
       const auto output = std::ranges::find_if(outputs, [&](const Declaration &o) { return match(o, input); });
       if (output == outputs.end()) {
-        if (input.is_used && !input.is_member) {
+        if (input.is_used) {
           add(Severity::Error, "missing-varying", i, input.position,
               fmt::format("input {} is no output of the {} stage", named(input), before));
         }
         continue;
       }
+      check_qualifiers(i, input, *output);
+      if (output->location != input.location || output->component != input.component) {
+        continue;
+      }
       const std::string written = type_name(output->type, output->is_arrayed);
       const std::string read = type_name(input.type, input.is_arrayed);
-      if (output->location == input.location && output->component == input.component && written != read &&
-          !input.type.is_struct && !is_part(*output, input)) {
+      if (input.type.is_struct && output->type.is_struct) {
+        check_members(i, input, *output);
+      }
+      else if (written != read && !input.type.is_struct && !is_part(*output, input)) {
         add(Severity::Error, "varying-type", i, input.position,
             fmt::format("input {} is {}, and the {} stage writes {}", named(input), read, before, written));
       }
     }
     for (const Declaration &output : outputs) {
       if (!output.is_captured && std::ranges::none_of(c_.facts[i].inputs, [&](const Declaration &input) {
-            return input.is_used && match(output, input);
+            return (input.is_used || input.is_block_used) && match(output, input);
           })) {
         add(Severity::Warning, "unread-output", i - 1, output.position,
             fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i]->stage())));

@@ -63,10 +63,18 @@ class Checker {
   void add_block_differences(const std::vector<LinkMessage> &errors);
   /** The stage that a link error is about, and the first declaration in it that the error names. */
   [[nodiscard]] std::pair<std::size_t, SourcePosition> place_of(std::string_view text) const;
+  /** Blocks of one name that are uniform in one stage and storage in another, about which glslang is silent. */
+  void check_kinds();
   void check_findings();
   void check_slots();
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
   [[nodiscard]] bool is_part(const Declaration &output, const Declaration &input) const;
+  /** OpenGL ES links stages of one version, and none with one of the desktop. glslang links any. */
+  void check_versions();
+  /** Interpolation and `invariant`, which drivers of OpenGL compare and glslang does not. */
+  void check_qualifiers(std::size_t stage, const Declaration &input, const Declaration &output);
+  /** An input and an output that are structs. Their members are compared in their order; names may differ. */
+  void check_members(std::size_t stage, const Declaration &input, const Declaration &output);
   void check_varyings();
   void check_unused_bindings();
   void check_blocks();

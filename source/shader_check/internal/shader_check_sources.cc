@@ -410,7 +410,45 @@ std::optional<LineDirective> line_directive(std::string_view text)
   return directive;
 }
 
-constexpr std::string_view comment_mark = "shader-check: ";
+/** `shader-check: RULE` or `shader-check: RULE=LEVEL`. */
+struct LevelComment {
+  std::string_view rule;
+  /** Empty: it is about its line. */
+  std::optional<std::string_view> level;
+  /** Behind it. */
+  std::string_view rest;
+};
+
+/** The first one in \a text. Spaces around `:` and `=` are optional. */
+std::optional<LevelComment> level_comment_in(std::string_view text)
+{
+  constexpr std::string_view mark = "shader-check";
+  for (std::size_t at = text.find(mark); at != std::string_view::npos; at = text.find(mark, at + 1)) {
+    std::string_view rest = text.substr(at + mark.size());
+    const auto skip_space = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size())); };
+    const auto take = [&](std::string_view ends) {
+      const std::string_view word = rest.substr(0, rest.find_first_of(ends));
+      rest.remove_prefix(word.size());
+      skip_space();
+      return word;
+    };
+    skip_space();
+    if (!rest.starts_with(':')) {
+      continue;
+    }
+    rest.remove_prefix(1);
+    skip_space();
+    LevelComment comment{take("=,;:. \t\r\n"), std::nullopt, {}};
+    if (rest.starts_with('=')) {
+      rest.remove_prefix(1);
+      skip_space();
+      comment.level = take(",;:.* \t\r\n");
+    }
+    comment.rest = rest;
+    return comment;
+  }
+  return std::nullopt;
+}
 
 std::optional<RuleLevel> rule_level(std::string_view word)
 {
@@ -490,7 +528,6 @@ void SourceLines::read(CheckTarget target)
 {
   const bool line_sets_next = source_.line_sets_next(target);
   for (const StageSource::File &file : source_.texts()) {
-    read_levels(file);
     SourcePosition position{file.index, 1, 0};
     bool is_in_comment = false;
     int number = 1;
@@ -513,6 +550,7 @@ void SourceLines::read(CheckTarget target)
         position.line = set->line + (line_sets_next || set->line == std::numeric_limits<int>::max() ? 0 : 1);
         continue;
       }
+      read_levels(file.index, position, text);
       const bool may_have_comment = is_in_comment || text.find('/') != std::string_view::npos;
       lines_.push_back(
           {position, text,
@@ -523,20 +561,23 @@ void SourceLines::read(CheckTarget target)
   }
 }
 
-void SourceLines::read_levels(const StageSource::File &file)
+void SourceLines::read_levels(std::size_t file, SourcePosition position, std::string_view text)
 {
-  for (std::size_t at = file.text.find(comment_mark); at != std::string_view::npos;
-       at = file.text.find(comment_mark, at + 1)) {
-    std::string_view rest = file.text.substr(at + comment_mark.size());
-    const std::string_view rule = rest.substr(0, rest.find_first_of("=,\r\n \t"));
-    if (!rest.substr(rule.size()).starts_with('=')) {
-      continue;
+  for (auto comment = level_comment_in(text); comment; comment = level_comment_in(comment->rest)) {
+    const auto rule = std::ranges::find(check_rules(), comment->rule, &CheckRule::name);
+    const std::optional<RuleLevel> level = rule_level(comment->level.value_or("off"));
+    if (rule == check_rules().end()) {
+      comment_faults_.push_back({position, fmt::format("there is no rule '{}'", comment->rule)});
     }
-    rest.remove_prefix(rule.size() + 1);
-    gpu::TextScanner scanner(rest);
-    const std::string_view word = scanner.take_word();
-    if (const std::optional<RuleLevel> level = rule_level(word)) {
-      levels_[file.index].insert_or_assign(std::string(rule), *level);
+    else if (!rule->is_optional) {
+      comment_faults_.push_back({position, fmt::format("rule '{}' has no level", comment->rule)});
+    }
+    else if (!level) {
+      comment_faults_.push_back(
+          {position, fmt::format("there is no level '{}'; there are off, warning and error", *comment->level)});
+    }
+    else if (comment->level) {
+      levels_[file].insert_or_assign(std::string(comment->rule), *level);
     }
   }
 }
@@ -553,14 +594,12 @@ std::optional<RuleLevel> SourceLines::level(std::size_t file, std::string_view r
 
 bool SourceLines::is_excused(SourcePosition position, std::string_view rule) const
 {
-  const std::string_view text = line(position);
-  const std::size_t at = text.find(comment_mark);
-  if (at == std::string_view::npos) {
-    return false;
+  for (auto comment = level_comment_in(line(position)); comment; comment = level_comment_in(comment->rest)) {
+    if (comment->rule == rule && !comment->level) {
+      return true;
+    }
   }
-  const std::string_view rest = text.substr(at + comment_mark.size());
-  return rest.starts_with(rule) && (rest.size() == rule.size() ||
-                                    std::string_view(", \t\r.;:").find(rest[rule.size()]) != std::string_view::npos);
+  return false;
 }
 
 std::size_t SourceLines::index_of(SourcePosition position) const

@@ -209,6 +209,15 @@ class SourceLines {
   [[nodiscard]] bool is_excused(SourcePosition position, std::string_view rule) const;
   /** The level that a comment in a file gives to \a rule: `// shader-check: RULE=off`, `=warning` or `=error`. */
   [[nodiscard]] std::optional<RuleLevel> level(std::size_t file, std::string_view rule) const;
+  /** A comment that looks as one of those above and is none. */
+  struct CommentFault {
+    SourcePosition position;
+    std::string text;
+  };
+  [[nodiscard]] const std::vector<CommentFault> &comment_faults() const
+  {
+    return comment_faults_;
+  }
   /** The line as written; empty if there is none. */
   [[nodiscard]] std::string_view line(SourcePosition position) const;
   /** The first line with \a name as a word outside of comments; preferably one where \a keyword precedes it. */
@@ -230,11 +239,13 @@ class SourceLines {
   [[nodiscard]] std::size_t index_of(SourcePosition position) const;
 
   StageSource &source_;
-  void read_levels(const StageSource::File &file);
+  /** Reads the comments of a line about levels. \a file: the one that they are in, whatever `#line` says. */
+  void read_levels(std::size_t file, SourcePosition position, std::string_view text);
 
   std::vector<Line> lines_;
   std::list<std::string> codes_;
   std::map<std::size_t, RuleLevels> levels_;
+  std::vector<CommentFault> comment_faults_;
   /** Indices in lines_ by file and line. Made when the first is sought. */
   mutable std::unordered_map<std::uint64_t, std::size_t> by_position_;
   /** Indices in lines_ by word. Made when the first word is sought. */

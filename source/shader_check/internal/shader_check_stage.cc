@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace gnomon::shader_check {
@@ -81,6 +82,8 @@ struct SpirvModule {
   std::vector<SpirvVariable> variables;
   /** By id: whether a function uses it. */
   std::vector<bool> used;
+  /** The first two indices of each access to a part of a variable, with the variable; 0: there is no second. */
+  std::set<std::array<std::uint32_t, 3>> accesses;
   bool is_in_function = false;
 
   explicit SpirvModule(std::span<const std::uint32_t> words)
@@ -131,6 +134,9 @@ struct SpirvModule {
         if (operand.type == SPV_OPERAND_TYPE_ID && words[operand.offset] < used.size()) {
           used[words[operand.offset]] = true;
         }
+      }
+      if ((one.opcode == spv::OpAccessChain || one.opcode == spv::OpInBoundsAccessChain) && one.num_words > 4) {
+        accesses.insert({words[3], words[4], one.num_words > 5 ? words[5] : 0});
       }
       return;
     }
@@ -377,6 +383,36 @@ class SpirvReader {
     }
   }
 
+  /** Whether a function uses the member \a index of the block \a variable. */
+  bool is_member_used(const SpirvVariable &variable, bool is_array, std::uint32_t index) const
+  {
+    return std::ranges::any_of(module_.accesses, [&](const std::array<std::uint32_t, 3> &access) {
+      const auto value = module_.constants.find(access[is_array ? 2 : 1]);
+      return access[0] == variable.id && value != module_.constants.end() && value->second == index;
+    });
+  }
+
+  /** Adds the members of the struct \a id of an input or output. \a outer: the sizes of the arrays around it. */
+  void add_fields(std::uint32_t id, const std::string &prefix, const std::vector<int> &outer,
+                  std::vector<BlockMember> &fields) const
+  {
+    const SpirvType &type = module_.type(id);
+    const std::string structure = module_.name(id);
+    for (std::uint32_t i = 0; i < type.operands.size(); i++) {
+      const std::string &name = member_of(type, i).name;
+      BlockMember field{prefix + name, structure,
+                        lines_.find_member(lines_.find_declaration(structure, "struct"), name),
+                        declared_type(type.operands[i])};
+      field.type.array_sizes.insert(field.type.array_sizes.begin(), outer.begin(), outer.end());
+      if (field.type.is_struct) {
+        add_fields(element_of(type.operands[i]), field.name + ".", field.type.array_sizes, fields);
+      }
+      else {
+        fields.push_back(std::move(field));
+      }
+    }
+  }
+
   void set_locations(Declaration &declaration, std::uint32_t type, const Decorations &decorations, bool is_input) const
   {
     declaration.type = declared_type(type);
@@ -389,6 +425,11 @@ class SpirvReader {
         declared.scalar != "double") {
       declaration.component = value_or(find(decorations, spv::DecorationComponent), 0);
       declaration.component_count = declared.vector_size;
+    }
+    if (declared.is_struct) {
+      std::vector<int> outer = declared.array_sizes;
+      outer.erase(outer.begin(), outer.begin() + (declaration.is_arrayed && !outer.empty() ? 1 : 0));
+      add_fields(element_of(type), declaration.name + ".", outer, declaration.members);
     }
   }
 
@@ -416,19 +457,29 @@ class SpirvReader {
     const bool has_locations = std::ranges::any_of(block.members, [](const auto &entry) {
       return find(entry.second.decorations, spv::DecorationLocation) != nullptr;
     });
-    if (!has_locations) {
+    const bool is_block = find(element, spv::DecorationBlock) != nullptr;
+    int next_location = value_or(find(variable.id, spv::DecorationLocation), -1);
+    // The elements of other arrays of blocks have locations of their own.
+    const bool is_one = (declaration.is_arrayed ? module_.type(type).operands[0] : type) == element;
+    if (!has_locations && !(is_block && is_one && next_location >= 0)) {
       set_locations(declaration, type, own == module_.decorations.end() ? none : own->second, is_input);
       list.push_back(std::move(declaration));
       return;
     }
+    declaration.is_block_used = declaration.is_used;
+    // A stage that only passes the block through uses all members.
+    const bool is_passed = find(variable.id, spv::DecorationPassthroughNV) != nullptr;
     for (std::uint32_t i = 0; i < block.operands.size(); i++) {
       const SpirvType::Member &entry = member_of(block, i);
       Declaration member = declaration;
       member.name += "." + entry.name;
-      member.is_member = true;
+      member.position = lines_.find_member(declaration.position, entry.name);
+      member.is_used = is_passed || is_member_used(variable, is_array(module_.type(type)), i);
       member.is_arrayed = false;
       member.is_captured |= find(entry.decorations, spv::DecorationOffset) != nullptr;
       set_locations(member, block.operands[i], entry.decorations, is_input);
+      member.location = member.location < 0 ? next_location : member.location;
+      next_location = member.location < 0 ? -1 : member.location + member.location_count;
       list.push_back(std::move(member));
     }
   }

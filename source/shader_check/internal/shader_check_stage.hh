@@ -65,14 +65,22 @@ struct Declaration {
   bool is_arrayed = false;
   /** Whether transform feedback captures the output. */
   bool is_captured = false;
-  /** Whether it is a member of a block of inputs or outputs: its use is known for the whole block only. */
-  bool is_member = false;
   bool is_used = false;
+  /** Members of a block of inputs or outputs: whether the stage uses this or another member. */
+  bool is_block_used = false;
+  /** Inputs and outputs, from the syntax tree only. */
+  bool is_flat = false;
+  bool is_no_perspective = false;
+  bool is_invariant = false;
   bool is_push_constant = false;
   /** Whether it is an image, which OpenGL numbers apart from textures. */
   bool is_image = false;
-  /** Blocks. A uniform block ends at the end of its last member's row of 16 bytes. */
+  /**
+   * Blocks, and inputs and outputs whose type is a struct. The types of the latter have the sizes of all arrays around
+   * the member, without that of `is_arrayed`.
+   */
   std::vector<BlockMember> members;
+  /** Blocks. A uniform block ends at the end of its last member's row of 16 bytes. */
   std::uint32_t size_bytes = 0;
 };
 

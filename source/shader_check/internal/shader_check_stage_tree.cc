@@ -25,6 +25,8 @@ class StageReader : public TIntermTraverser {
   std::vector<TIntermAggregate *> functions;
   std::map<std::string, std::set<std::string>> calls;
   std::set<long long> used;
+  /** Members of blocks that are used: the id of the block and the index of the member. */
+  std::set<std::pair<long long, std::size_t>> used_members;
 
   StageReader() : TIntermTraverser(true, false, true) {}
 
@@ -46,6 +48,22 @@ class StageReader : public TIntermTraverser {
     }
     else if (aggregate->getOp() == glslang::EOpFunctionCall) {
       calls[function_].insert(text_of(aggregate->getName()));
+    }
+    return true;
+  }
+  bool visitBinary(TVisit /*visit*/, glslang::TIntermBinary *binary) override
+  {
+    if (binary->getOp() == glslang::EOpIndexDirectStruct && binary->getRight()->getAsConstantUnion() != nullptr) {
+      const glslang::TIntermTyped *owner = binary->getLeft();
+      for (const glslang::TIntermBinary *element = owner->getAsBinaryNode();
+           element != nullptr && element->getOp() != glslang::EOpIndexDirectStruct;
+           element = owner->getAsBinaryNode()) {
+        owner = element->getLeft();
+      }
+      if (const TIntermSymbol *symbol = owner->getAsSymbolNode()) {
+        used_members.emplace(symbol->getId(),
+                             std::size_t(binary->getRight()->getAsConstantUnion()->getConstArray()[0].getIConst()));
+      }
     }
     return true;
   }
@@ -150,8 +168,26 @@ void add_members(const TType &type, const std::string &prefix, const std::string
   }
 }
 
-/** Sets the locations that an input or output of \a type takes. */
-void set_locations(Declaration &declaration, const TType &type, bool is_arrayed, EShLanguage language)
+/** Adds the members of the struct \a type of an input or output. \a outer: the sizes of the arrays around it. */
+void add_fields(const TType &type, const std::string &prefix, const std::vector<int> &outer, const SourceLines &lines,
+                std::vector<BlockMember> &fields)
+{
+  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
+    BlockMember field{prefix + text_of(entry.type->getFieldName()), text_of(type.getTypeName()),
+                      position_of(entry.loc, lines), declared_type(*entry.type)};
+    field.type.array_sizes.insert(field.type.array_sizes.begin(), outer.begin(), outer.end());
+    if (entry.type->isStruct()) {
+      add_fields(*entry.type, field.name + ".", field.type.array_sizes, lines, fields);
+    }
+    else {
+      fields.push_back(std::move(field));
+    }
+  }
+}
+
+/** Sets the locations that an input or output of \a type takes, and its members. */
+void set_locations(Declaration &declaration, const TType &type, bool is_arrayed, const SourceLines &lines,
+                   EShLanguage language)
 {
   const glslang::TQualifier &qualifier = type.getQualifier();
   declaration.type = declared_type(type);
@@ -165,25 +201,46 @@ void set_locations(Declaration &declaration, const TType &type, bool is_arrayed,
     declaration.component = qualifier.hasComponent() ? int(qualifier.layoutComponent) : 0;
     declaration.component_count = type.getVectorSize();
   }
+  if (type.isStruct()) {
+    std::vector<int> outer = declaration.type.array_sizes;
+    outer.erase(outer.begin(), outer.begin() + (is_arrayed && !outer.empty() ? 1 : 0));
+    add_fields(type, declaration.name + ".", outer, lines, declaration.members);
+  }
 }
 
-/** Adds an input or output of \a type. The members of a block with locations are connected one by one. */
-void add_varying(Declaration declaration, const TType &type, EShLanguage language, std::vector<Declaration> &list)
+/** Adds an input or output of \a symbol. The members of a block with locations are connected one by one. */
+void add_varying(Declaration declaration, const TIntermSymbol &symbol, const StageReader &reader,
+                 const SourceLines &lines, EShLanguage language, std::vector<Declaration> &list)
 {
-  const bool is_arrayed = type.getQualifier().isArrayedIo(language);
-  declaration.is_captured = type.getQualifier().hasXfbOffset();
+  const TType &type = symbol.getType();
+  const glslang::TQualifier &qualifier = type.getQualifier();
+  const bool is_arrayed = qualifier.isArrayedIo(language);
+  declaration.is_captured = qualifier.hasXfbOffset();
+  declaration.is_flat = qualifier.flat;
+  declaration.is_no_perspective = qualifier.nopersp;
+  declaration.is_invariant = qualifier.invariant;
   const auto has_location = [](const glslang::TTypeLoc &entry) { return entry.type->getQualifier().hasLocation(); };
-  if (type.getBasicType() != glslang::EbtBlock || std::ranges::none_of(*type.getStruct(), has_location)) {
-    set_locations(declaration, type, is_arrayed, language);
+  const bool is_block = type.getBasicType() == glslang::EbtBlock;
+  // The elements of other arrays of blocks have locations of their own.
+  const bool is_one = declaration.type.array_sizes.size() == (is_arrayed ? 1U : 0U);
+  if (!is_block || !((qualifier.hasLocation() && is_one) || std::ranges::any_of(*type.getStruct(), has_location))) {
+    set_locations(declaration, type, is_arrayed, lines, language);
     list.push_back(std::move(declaration));
     return;
   }
-  for (const glslang::TTypeLoc &entry : *type.getStruct()) {
+  declaration.is_block_used = declaration.is_used;
+  int next_location = qualifier.hasLocation() ? int(qualifier.layoutLocation) : -1;
+  for (std::size_t i = 0; i < type.getStruct()->size(); i++) {
+    const glslang::TTypeLoc &entry = (*type.getStruct())[i];
     Declaration member = declaration;
     member.name += "." + text_of(entry.type->getFieldName());
-    member.is_member = true;
+    member.position = position_of(entry.loc, lines);
+    // A stage that only passes the block through uses all members.
+    member.is_used = reader.used_members.contains({symbol.getId(), i}) || qualifier.layoutPassthrough;
     member.is_captured |= entry.type->getQualifier().hasXfbOffset();
-    set_locations(member, *entry.type, false, language);
+    set_locations(member, *entry.type, false, lines, language);
+    member.location = member.location < 0 ? next_location : member.location;
+    next_location = member.location < 0 ? -1 : member.location + member.location_count;
     list.push_back(std::move(member));
   }
 }
@@ -225,9 +282,10 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
     if (qualifier.layoutPassthrough) {
       // GL_NV_geometry_shader_passthrough: the stage writes it as it reads it.
       declaration.is_used = true;
-      add_varying(declaration, type, language, facts.outputs);
+      add_varying(declaration, symbol, reader, lines, language, facts.outputs);
     }
-    add_varying(std::move(declaration), type, language, qualifier.isPipeInput() ? facts.inputs : facts.outputs);
+    add_varying(std::move(declaration), symbol, reader, lines, language,
+                qualifier.isPipeInput() ? facts.inputs : facts.outputs);
   }
 }
 
