@@ -621,7 +621,8 @@ bool set_numbers(Value &value, double number)
   return false;
 }
 
-/** The pointer to a property of a thing in the part \a within of a file, or to its first number. Empty: the file does not have it. */
+/** The pointer to a property of a thing in the part \a within of a file, or to its first number. Empty: the file does
+ * not have it. */
 std::string pointer_to(const json &document, const scene::Description &row, const std::string &within)
 {
   const std::array places{'/' + std::string(row.path), "/gnomon_" + std::string(row.key_or_name())};
