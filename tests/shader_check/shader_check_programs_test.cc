@@ -91,6 +91,185 @@ TEST(CheckProgram, PushConstantsHaveAnyNameInAnyStage)
   }
 }
 
+struct Connection {
+  std::string output;
+  std::string input;
+  std::string read;
+  /** The line of the mistake and its rule; line 0: there is none. */
+  int line = 0;
+  std::string rule{};
+};
+
+TEST(CheckProgram, MembersOfBlocksAndStructsAreConnectedInVulkan)
+{
+  const std::string pair = "struct S {\nvec4 a;\nvec4 b;\n};\n";
+  const std::string other_pair = "struct S {\nvec4 a;\nvec2 b;\n};\n";
+  const std::string array = "struct S {\nvec4 a;\nvec4 b[2];\n};\n";
+  const std::vector<Connection> connections = {
+      {"layout(location = 0) out B { vec4 x; vec4 y; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;",
+       "i.y"},
+      {"layout(location = 0) out B { vec4 x; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;", "i.x + i.y",
+       4, "missing-varying"},
+      // A member that is not read needs no output.
+      {"layout(location = 0) out B { vec4 x; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;", "i.x"},
+      {"layout(location = 0) out B { vec4 x; vec2 y; } o;", "layout(location = 0) in B {\nvec4 x;\nvec4 y;\n} i;",
+       "i.y", 4, "varying-type"},
+      {"out B { layout(location = 0) vec4 x; layout(location = 2) vec4 y; } o;",
+       "in B {\nlayout(location = 0) vec4 x;\nlayout(location = 1) vec4 y;\n} i;", "i.y", 4, "missing-varying"},
+      // Names of blocks and members do not count, and a member may be connected to a variable.
+      {"layout(location = 1) out Other { vec4 x; mat2 m; vec4 y; } o;",
+       "layout(location = 1) in vec4 x;\nlayout(location = 2) in B {\nmat2 m;\nvec4 z;\n} i;", "x + i.z + i.m[0].xyxy"},
+      {"layout(location = 1) out Other { vec4 x; mat2 m; vec4 y; } o;",
+       "layout(location = 1) in vec4 x;\nlayout(location = 4) in B {\nvec2 z;\n} i;", "x + i.z.xyxy", 4,
+       "varying-type"},
+      {pair + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a + s.b"},
+      {other_pair + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 4, "varying-type"},
+      {array + "layout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 4, "varying-type"},
+      {"struct S { vec4 a; };\nlayout(location = 0) out S s;", pair + "layout(location = 0) in S s;", "s.a", 6,
+       "varying-type"},
+      {pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[2];\n} i;",
+       "i.s[1].b"},
+      {other_pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[2];\n} i;",
+       "i.s[1].b", 4, "varying-type"},
+      {pair + "layout(location = 0) out B { S s[2]; } o;", pair + "layout(location = 0) in B {\nS s[3];\n} i;",
+       "i.s[1].b", 3, "varying-type"},
+  };
+  for (const Connection &one : connections) {
+    const std::string messages = messages_of(
+        check_texts({{"x.vert", "#version 450\n" + one.output + "\nvoid main() { gl_Position = vec4(0); }\n"},
+                     {"x.frag", "#version 450\n" + one.input +
+                                    "\nlayout(location = 0) out vec4 c;\nvoid main() { c = " + one.read + "; }\n"}},
+                    for_target(CheckTarget::Vulkan12)));
+    const std::size_t at = messages.find(fmt::format("x.frag:{}: error: ", one.line));
+    EXPECT_EQ(messages.find(": error: ") != std::string::npos, one.line > 0) << one.output << one.input << messages;
+    if (one.line > 0) {
+      ASSERT_NE(at, std::string::npos) << one.output << one.input << messages;
+      EXPECT_NE(messages.substr(at, messages.find('\n', at) - at).find("[" + one.rule + "]"), std::string::npos)
+          << messages;
+    }
+  }
+}
+
+TEST(CheckProgram, StagesThatADriverDoesNotLinkAreErrors)
+{
+  const auto is_linked = [](const std::string &vertex, const std::string &fragment, CheckTarget target) {
+    const ProgramCheck check = check_texts({{"x.vert", vertex}, {"x.frag", fragment}}, for_target(target));
+    EXPECT_TRUE(!check.has_errors() || messages_of(check).find("[link]") != std::string::npos) << messages_of(check);
+    return !check.has_errors();
+  };
+  // As Mesa 22 links them, except that it takes `smooth` for another qualifier than none before 4.40.
+  for (const int version : {130, 150, 330, 400, 430, 440, 450, 460}) {
+    for (const std::string output : {"", "smooth ", "flat ", "noperspective "}) {
+      for (const std::string input : {"", "smooth ", "flat ", "noperspective "}) {
+        const auto plain = [](const std::string &word) { return word == "smooth " ? std::string() : word; };
+        const std::string head = fmt::format("#version {}\n", version);
+        EXPECT_EQ(is_linked(head + output + "out vec4 v;\nvoid main() { gl_Position = v = vec4(1); }\n",
+                            head + input + "in vec4 v;\nout vec4 c;\nvoid main() { c = v; }\n", CheckTarget::OpenGl),
+                  version >= 440 || plain(output) == plain(input))
+            << version << output << input;
+      }
+    }
+  }
+  for (const int version : {120, 130, 330, 410, 420, 450}) {
+    const std::string head = fmt::format("#version {}\n", version);
+    const bool is_old = version < 130;
+    EXPECT_EQ(is_linked(head + "invariant " + (is_old ? "varying" : "out") +
+                            " vec4 v;\nvoid main() { gl_Position = v = vec4(1); }\n",
+                        head + (is_old ? "varying vec4 v;\n" : "in vec4 v;\nout vec4 c;\n") + "void main() { " +
+                            (is_old ? "gl_FragColor" : "c") + " = v; }\n",
+                        CheckTarget::OpenGl),
+              version >= 420)
+        << version;
+  }
+  const std::map<std::string, std::pair<std::string, std::string>> es = {
+      {"", {"varying vec4 v;\n", "gl_FragColor"}},
+      {"#version 300 es\n", {"in vec4 v;\nout vec4 c;\n", "c"}},
+      {"#version 310 es\n", {"in vec4 v;\nout vec4 c;\n", "c"}}};
+  for (const auto &[before, vertex] : es) {
+    for (const auto &[after, fragment] : es) {
+      EXPECT_EQ(is_linked(before + (before.empty() ? "varying" : "out") +
+                              " vec4 v;\nvoid main() { gl_Position = v = vec4(1.0); }\n",
+                          after + "precision mediump float;\n" + fragment.first + "void main() { " + fragment.second +
+                              " = v; }\n",
+                          CheckTarget::Es),
+                before == after)
+          << before << after;
+    }
+  }
+  EXPECT_FALSE(is_linked("#version 300 es\nvoid main() { gl_Position = vec4(1.0); }\n",
+                         "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", CheckTarget::OpenGl));
+}
+
+TEST(CheckProgram, ALevelCommentIsReadOrNamed)
+{
+  const auto out_of = [](const std::string &file, const std::string &line) {
+    return messages_of(
+        check_texts({{"x.frag", "#version 450\n" + file +
+                                    "\nlayout(location = 0) out vec4 c;\nlayout(binding = 0) uniform sampler2D t;" +
+                                    line + "\nvoid main() { c = vec4(1); }\n"}}));
+  };
+  for (const std::string start :
+       {"// shader-check: ", "//shader-check:", "//  shader-check :  ", "/* shader-check:\t"}) {
+    const std::string end = start.starts_with("/*") ? " */" : "";
+    for (const std::string equals : {"=", " = ", "= "}) {
+      const std::string out = out_of(start + "unused-binding" + equals + "off" + end, "");
+      EXPECT_EQ(out, "") << start << equals;
+      const std::string error = out_of(start + "unused-binding" + equals + "error, why" + end, "");
+      EXPECT_NE(error.find("x.frag:4: error: "), std::string::npos) << start << equals << error;
+    }
+    const std::string out = out_of("", start + "unused-binding, why" + end);
+    EXPECT_EQ(out, "") << start;
+    for (const auto &[comment, message] :
+         {std::pair("unused-bindings=off", "there is no rule 'unused-bindings'"),
+          {"unused-bindings", "there is no rule 'unused-bindings'"},
+          {"unused-binding=none", "there is no level 'none'; there are off, warning and error"},
+          {"unused-binding =", "there is no level ''"},
+          {"link=off", "rule 'link' has no level"}}) {
+      const std::string fault = out_of(start + comment + end, "");
+      EXPECT_NE(fault.find(fmt::format("x.frag:2: warning: {}", message)), std::string::npos)
+          << start << comment << fault;
+      EXPECT_NE(fault.find("[level-comment]"), std::string::npos) << fault;
+      EXPECT_NE(fault.find("[unused-binding]"), std::string::npos) << fault;
+    }
+  }
+}
+
+TEST(CheckProgram, OneNameHasOneKindInAllStages)
+{
+  const auto message = [](const std::string &vertex, const std::string &fragment, CheckTarget target) {
+    return messages_of(check_texts(
+        {{"x.vert", "#version 450\n" + vertex + "\nvoid main() { gl_Position = " +
+                        (vertex.find("sampler") == std::string::npos ? "b.v" : "texture(t, vec2(0))") + "; }\n"},
+         {"x.frag", "#version 450\nlayout(location = 0) out vec4 c;\n" + fragment + "\nvoid main() { c = " +
+                        (fragment.find("sampler") == std::string::npos ? "b.v" : "texture(t, vec3(0))") + "; }\n"}},
+        for_target(target)));
+  };
+  const std::string uniform = "layout(binding = 0) uniform B { vec4 v; } b;";
+  const std::string storage = "layout(binding = 1) buffer B { vec4 v; } b;";
+  for (const auto &[vertex, fragment, file] :
+       {std::tuple(uniform, storage, "x.frag:3"), {storage, uniform, "x.vert:2"}}) {
+    const std::string out = message(vertex, fragment, CheckTarget::Vulkan12);
+    EXPECT_NE(out.find(std::string(file) + ": warning: 'B' is a storage block here"), std::string::npos) << out;
+    EXPECT_NE(out.find("[block-match]"), std::string::npos) << out;
+  }
+  const std::string out = message("layout(binding = 0) uniform sampler2D t;",
+                                  "layout(binding = 0) uniform samplerCube t;", CheckTarget::OpenGl);
+  EXPECT_NE(out.find("x.frag:3: error: texture 't' is samplerCube here and sampler2D in an earlier stage [link]"),
+            std::string::npos)
+      << out;
+  // UTF-32, of both orders of bytes, with and without a mark.
+  for (const bool has_mark : {true, false}) {
+    for (const bool is_little : {true, false}) {
+      std::string wide = !has_mark ? "" : is_little ? std::string("\xFF\xFE\0\0", 4) : std::string("\0\0\xFE\xFF", 4);
+      for (const char c : std::string("#version 450\n")) {
+        wide += is_little ? std::string{c, 0, 0, 0} : std::string{0, 0, 0, c};
+      }
+      const std::string out_of_wide = messages_of(check_texts({{"w.frag", wide}}));
+      EXPECT_EQ(out_of_wide.find("w.frag:1: error: the file is text in UTF-32"), 0U) << out_of_wide;
+    }
+  }
+}
+
 TEST(CheckProgram, EveryStageIsCompiled)
 {
   const std::string rays = "#version 460\n#extension GL_EXT_ray_tracing : require\n";
