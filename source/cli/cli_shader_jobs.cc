@@ -119,8 +119,11 @@ class Cache {
       output::write_file(path_of(job), {reinterpret_cast<const char *>(bytes.data()), bytes.size()},
                          output::Flush::None);
     }
-    catch (const output::Error &) {
-      // Then nothing is kept.
+    catch (const output::Error &reason) {
+      if (!is_failure_reported_) {
+        is_failure_reported_ = true;
+        print_message("warning: --cache keeps nothing: {}\n", reason.what());
+      }
     }
   }
 
@@ -156,6 +159,7 @@ class Cache {
   fs::path folder_;
   const gpu::ShaderFiles &files_;
   std::map<std::string, std::string> contents_;
+  bool is_failure_reported_ = false;
 };
 
 /** Shows a progress bar on a terminal; silent in a pipe. */

@@ -326,6 +326,19 @@ TEST_F(ShaderFilesTest, CacheKnowsWhatTheResultDependsOn)
   }
 }
 
+TEST_F(ShaderFilesTest, ACacheThatCannotBeUsedIsNamedOnce)
+{
+  write("a.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  write("b.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  for (const std::string cache : {"a.frag", "a.frag/cache", "/proc/cache"}) {
+    const Finished finished = check("a.frag b.frag --cache " + cache);
+    EXPECT_EQ(finished.status, 0) << finished.out;
+    EXPECT_EQ(finished.err.find("warning: --cache keeps nothing: "), 0U) << cache << finished.err;
+    EXPECT_EQ(finished.err.find("warning", 1), std::string::npos) << finished.err;
+    EXPECT_NE(finished.err.find(cache), std::string::npos) << finished.err;
+  }
+}
+
 TEST_F(ShaderFilesTest, CacheKnowsTheEnginesShaders)
 {
   std::filesystem::copy(GNOMON_SOURCE "/shaders", folder / "tree", std::filesystem::copy_options::recursive);
