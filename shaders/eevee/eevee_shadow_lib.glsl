@@ -51,15 +51,6 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
 const float CONTACT_ERROR_TEXELS = 0.1;
 
 /**
- * Largest rise of the receiver's plane within a texel, in parts of all depths of a layer. The surface does not reach the texels around
- * the receiver then, so that its plane there is in front of casters or behind them by chance. The light of a sun is at less than about
- * 10 / texels to the surface: 0.5 degrees with 1024 texels. In layers smaller than GRAZING_SIZE_PX, as in previews, more may rise,
- * because the light of a low sun would be lost: it is at less than about 1 degree.
- */
-const float GRAZING_RISE_MAX = 0.1;
-const float GRAZING_SIZE_PX = 512.0;
-
-/**
  * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
  * that from the texel \a outer to \a height and that to \a inner. Heights that are not above 0 are of no caster. 0: unknown.
  */
@@ -78,8 +69,6 @@ float caster_slope(float outer, float height, float inner)
  * such as the outer part of a wall which passes through a floor, or nothing. It is not beside the receiver. The caster is therefore
  * continued from its texel towards the others, along its own slope. Where it ends at the receiver's plane before a texel, a receiver on
  * its side of the end is in shadow, and a receiver beyond the end is lit. Edges of casters in front of the plane are blended.
- *
- * A receiver that the light grazes is in shadow, \see GRAZING_RISE_MAX.
  */
 float receiver_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
 {
@@ -128,9 +117,7 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
     blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
   }
-  float rise_max = GRAZING_RISE_MAX * max(GRAZING_SIZE_PX / float(size_px), 1.0);
-  bool is_grazed = abs(plane.slope.x) + abs(plane.slope.y) > rise_max;
-  return is_grazed ? 0.0 : is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
+  return is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
 }
 
 float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane,
