@@ -545,10 +545,11 @@ void close_joints(Scene &scene)
     // Vertices of two triangles at the same place, up to rounding.
     const double rounding =
         coordinate_rounding * glm::length(glm::dvec3(glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max))));
-    const auto same = std::ranges::unique(cuts, [&](const Cut &a, const Cut &b) {
+    const auto is_same = [&](const Cut &a, const Cut &b) {
       return a.place == b.place && double(glm::distance(a.position, b.position)) <= rounding;
-    });
-    cuts.erase(same.begin(), same.end());
+    };
+    // clang 14 does not compile std::ranges::unique.
+    cuts.erase(std::unique(cuts.begin(), cuts.end(), is_same), cuts.end());
     Splitter(mesh, std::move(cuts)).split();
     scene.replace(handle, std::move(mesh));
   }
