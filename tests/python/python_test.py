@@ -173,7 +173,7 @@ class Scenes(unittest.TestCase):
                 (TypeError, "lamp 'sun' has no property 'power'; it has: name, kind", lambda: lamp.edit(angle=0.1, power=1)),
                 (gnomon.InvalidEdit, "camera 'eye': near -1 is not above 0", lambda: setattr(camera, "near", -1)),
                 (gnomon.InvalidEdit, "camera 'eye': vertical_angle 4 ", lambda: setattr(camera, "vertical_angle", 4)),
-                (gnomon.InvalidEdit, "node 'square': its matrix has inf", lambda: setattr(node, "position", (math.inf, 0, 0))),
+                (gnomon.InvalidEdit, "node 'square': its matrix is not", lambda: setattr(node, "position", (math.inf, 0, 0))),
                 (gnomon.InvalidEdit, "node", lambda: setattr(node, "parent", node)),
                 (TypeError, "node 'square': parent_from_node", lambda: setattr(node, "parent_from_node", [1, 2])),
                 (gnomon.InvalidEdit, "world", lambda: scene.set_world(strength=-1))):

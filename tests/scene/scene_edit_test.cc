@@ -1030,9 +1030,8 @@ TEST(SceneEdit, InvalidValuesAreRefused)
       {.name = "f"},
       {{"surface function 'f': 65537 bytes", [](SurfaceFunction &function) { function.text.assign(65537, ' '); }},
        {"NUL", [](SurfaceFunction &function) { function.text.assign(1, '\0'); }}});
-  expect_refused<Node>(named("n"), {{"must be finite", [](Node &node) { node.parent_from_node[1][1] = nan; }},
-                                    {"must be finite", [](Node &node) { node.parent_from_node[3][0] = infinity; }},
-                                    {"at most 1e+12", [](Node &node) { node.parent_from_node[3][2] = -1.1e12; }},
+  expect_refused<Node>(named("n"), {{"not finite", [](Node &node) { node.parent_from_node[1][1] = nan; }},
+                                    {"not finite", [](Node &node) { node.parent_from_node[3][0] = infinity; }},
                                     {"not affine", [](Node &node) { node.parent_from_node[0][3] = 0.5; }},
                                     {"not affine", [](Node &node) { node.parent_from_node[3][3] = 2.0; }},
                                     {"not affine", [](Node &node) { node.parent_from_node = glm::dmat4(0.0); }}});
