@@ -3,7 +3,7 @@
 //
 // Each sample shades one point of the lamp. A narrow lobe, which contains few of all points, would show each of them as a spot.
 // Narrow lobes reflect the whole lamp instead, in closed form, times the visibility of the point (Heitz, Hill and McGuire 2018).
-// With more samples fewer lobes count as narrow, so that pictures converge.
+// Fewer lobes count as narrow if there are more samples, so that pictures converge.
 
 /**
  * Anisotropic lobes have no closed form. They are widened to at least this part of HighlightLamp::alpha_points: to a lobe that

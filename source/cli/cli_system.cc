@@ -37,8 +37,8 @@ void open_standard_streams()
 {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) < 0) {
-      // It takes the smallest free number, which is this one. Reading a closed input stays an error, as does writing to
-      // a closed output.
+      // The file takes the smallest free number, which is this one. Reading a closed input stays an error, as does
+      // writing to a closed output.
       static_cast<void>(open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_WRONLY));
     }
   }

@@ -156,7 +156,7 @@ struct Body {
   const Mesh *mesh = nullptr;
   glm::dmat4 world_from_object{1.0};
   glm::dmat4 object_from_world{1.0};
-  /** Of coordinates, metres in world space. */
+  /** Error of a coordinate of the mesh in world space, metres. */
   double rounding = 0.0;
 
   [[nodiscard]] glm::dvec3 world(const glm::vec3 &position) const
@@ -310,7 +310,7 @@ class EdgeGrid {
   template <typename Use>
   void visit(const glm::dvec3 &a, const glm::dvec3 &b, double reach, const Use &use) const
   {
-    // In parts of at most two cells: the box of a long diagonal has many cells.
+    // The line is divided into parts of at most two cells, because the box of a long diagonal has many cells.
     const glm::dvec3 size = glm::abs(b - a);
     const int parts = 1 + int(std::min(0.5 * cells_ * std::max({size.x, size.y, size.z}), 2.0 * cell_count));
     for (int i = 0; i < parts; i++) {
@@ -324,9 +324,9 @@ class EdgeGrid {
   glm::dvec3 max_{-1e300};
   /** Edges are in all cells within this distance. */
   double rounding_ = 0.0;
-  /** In a metre. */
+  /** Number of cells in a metre. */
   double cells_ = 1.0;
-  /** By cell: the place of its first edge in `items_`; 0: it has none. */
+  /** The place in `items_` of the first edge of each cell; 0: the cell has none. */
   Numbers first_{0};
   std::vector<std::uint32_t> items_;
 };
@@ -334,9 +334,9 @@ class EdgeGrid {
 /** A new vertex on an edge of a triangle. */
 struct Cut {
   EdgePlace place = 0;
-  /** From the first corner of the edge, 0, to its second, 1. */
+  /** Place of the vertex along the edge: 0 at the first corner, 1 at the second. */
   double along = 0.0;
-  /** In the space of the mesh. */
+  /** Position of the vertex in the space of the mesh. */
   glm::vec3 position{0.0F};
 };
 

@@ -11,12 +11,13 @@ namespace gnomon::scene {
  * sample of a picture or a texel of a shadow map may see through it. Surfaces and the values of vertices do not change
  * beyond rounding.
  *
- * Only where one of the two edges belongs to a single triangle: bodies that are closed have no cracks. Opaque meshes of
- * triangles that are not deformed, in the present pose, whose vertices lie on the edge within two units in the last
- * place of their coordinates. Wider gaps stay. Meshes without such joints are not edited.
+ * An edge is split if a single triangle has it, or if the vertex is at the end of such an edge: closed bodies have no
+ * cracks. The vertex must lie on the edge within two units in the last place of the coordinates; wider gaps stay. The
+ * meshes must be opaque, of triangles and not deformed. Their places are those of the present pose. Meshes without such
+ * joints are not edited.
  *
- * So that the time is bounded, it does nothing in scenes with more than 2^15 edges of a single triangle, or with many
- * of them in one place.
+ * The function does nothing in scenes with more than 2^15 edges of a single triangle, or with many of them in one
+ * place, so that its time is bounded.
  */
 void close_joints(Scene &scene);
 

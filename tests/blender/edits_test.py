@@ -25,7 +25,7 @@ CHECK_EVERY = 100
 FILE = f"{FOLDER}/edits.blend"
 library = ctypes.CDLL(LIBRARY)
 library.gl_state_changes.restype = ctypes.c_char_p
-# What Blender's own functions change when they draw a texture. They set these anew before each use, blending from the values of gpu.state.
+# State that Blender's own functions change when they draw a texture. They set it anew before each use, and blending from gpu.state.
 DRAWING = ('GL_CURRENT_PROGRAM', 'GL_VERTEX_ARRAY_BINDING', 'GL_ARRAY_BUFFER_BINDING', 'GL_VERTEX_BINDING_BUFFER', 'GL_TEXTURE_BINDING_2D, unit 0',
            'GL_SAMPLER_BINDING, unit 0', 'GL_BLEND')
 calls = collections.Counter()
@@ -33,7 +33,7 @@ changed = collections.Counter()
 
 
 def own_state():
-    """What Blender sets before each of its draws."""
+    """The state that Blender sets before each of its draws."""
     state = gpu.state
     return (state.blend_get(), state.depth_test_get(), state.depth_mask_get(), state.line_width_get(), state.viewport_get(),
             gpu.matrix.get_model_view_matrix().freeze(), gpu.matrix.get_projection_matrix().freeze())

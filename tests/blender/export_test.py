@@ -400,7 +400,7 @@ class Objects(ExportTest):
             for a, b in zip(found, places):
                 self.assertNear(a, b, 4)
             self.assertNotIn("instances", file.report)
-        # What is not drawn itself, which a viewport shows a tenth of.
+        # The emitter is not drawn, and a viewport shows a tenth of its particles.
         box.hide_render = True
         system.display_percentage = 10
         file = File()

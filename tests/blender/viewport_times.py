@@ -21,7 +21,7 @@ ROUNDS = int(sys.argv[-1])
 FRAMES = 5
 LIMIT = 4
 ENGINES = ('BLENDER_EEVEE', 'GNOMON')
-# Of a first picture, to that of LIMIT samples.
+# RMSE of a first picture to that of LIMIT samples.
 FIRST_RMSE = 0.1
 # The last one is Blender's own share: it draws its window once for each of EEVEE's frames, and twice for Gnomon's.
 MEASURES = ('first picture', 'frame, lamp moves', 'frame, view turns', 'redraw of a complete picture')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What tests of the viewport share: they run in Blender's window, as steps between which Blender draws."""
+"""Functions of the tests of the viewport. These run in Blender's window, as steps between which Blender draws."""
 
 import importlib
 import sys

@@ -536,7 +536,7 @@ TEST(GltfExport, TheStudioThatAProgramSetIsNotWrittenUntilTheSceneHasMore)
   darker.strength = 0.5F;
   scene.set_world(darker);
   EXPECT_TRUE(has_world());
-  // As an undo sets it.
+  // An undo sets the same world again.
   scene.set_world(scene.default_world);
   EXPECT_FALSE(has_world());
   // A file with a lamp gets no studio.
@@ -638,7 +638,7 @@ std::string pointer_to(const json &document, const scene::Description &row, cons
   return {};
 }
 
-/** Without those about what the scene lacks, such as a camera. */
+/** The warnings, without those about things that the scene lacks, such as a camera. */
 std::string warnings_of_things(const Scene &scene)
 {
   std::string text;

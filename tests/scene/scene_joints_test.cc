@@ -127,7 +127,7 @@ TEST_F(CloseJointsTest, LeaveGapsClosedBodiesAndOtherMaterials)
   EXPECT_EQ(scene.revision(), before);
 }
 
-/** As many pairs of vertices and edges in one place as there may be: it ends at once, and edits nothing. */
+/** With more pairs of vertices and edges in one place than there may be, the search ends at once and edits nothing. */
 TEST_F(CloseJointsTest, EndInCrowds)
 {
   Mesh crowd = floor();

@@ -157,7 +157,7 @@ TEST(CheckProgram, StagesThatADriverDoesNotLinkAreErrors)
     EXPECT_TRUE(!check.has_errors() || messages_of(check).find("[link]") != std::string::npos) << messages_of(check);
     return !check.has_errors();
   };
-  // As Mesa 22 links them, except that it takes `smooth` for another qualifier than none before 4.40.
+  // Mesa 22 links the same programs, except that it takes `smooth` for another qualifier than none before 4.40.
   for (const int version : {130, 150, 330, 400, 430, 440, 450, 460}) {
     for (const std::string output : {"", "smooth ", "flat ", "noperspective "}) {
       for (const std::string input : {"", "smooth ", "flat ", "noperspective "}) {
@@ -257,7 +257,7 @@ TEST(CheckProgram, OneNameHasOneKindInAllStages)
   EXPECT_NE(out.find("x.frag:3: error: texture 't' is samplerCube here and sampler2D in an earlier stage [link]"),
             std::string::npos)
       << out;
-  // UTF-32, of both orders of bytes, with and without a mark.
+  // A file in UTF-32 is named in both orders of bytes, with and without a mark.
   for (const bool has_mark : {true, false}) {
     for (const bool is_little : {true, false}) {
       std::string wide = !has_mark ? "" : is_little ? std::string("\xFF\xFE\0\0", 4) : std::string("\0\0\xFE\xFF", 4);

@@ -438,7 +438,7 @@ TEST(ViewAdditionsTest, WhatIsAddedIsReadBackAsItWasAndSurfacesFaceOutwards)
       }
     }
   }
-  // Apart, because the importer splits triangles at vertices of others that lie on their edges.
+  // The nodes are moved apart, because the importer splits triangles at vertices of others that lie on their edges.
   std::vector<scene::Handle<scene::Node>> nodes;
   for (const auto &[handle, node] : scene.nodes()) {
     nodes.push_back(handle);

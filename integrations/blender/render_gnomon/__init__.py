@@ -27,7 +27,7 @@ VIEW_TRANSFORMS = {'Standard': 'standard', 'Raw': 'raw', 'AgX': 'agx', 'Khronos 
 # Kinds of objects that have no meaning in glTF.
 UNWRITTEN_OBJECTS = {'VOLUME', 'CURVES', 'POINTCLOUD', 'GPENCIL', 'GREASEPENCIL', 'LIGHT_PROBE'}
 DRAWN_OBJECTS = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'LIGHT'}
-# Of these, geometry nodes and metaballs aside, the exporter writes the surface.
+# Kinds of objects whose own surface the exporter writes. It leaves out metaballs and the instances of geometry nodes.
 WRITTEN_SURFACES = {'MESH', 'CURVE', 'SURFACE', 'FONT'}
 # Entries of persistent_id that are not used.
 NO_ID = 2**31 - 1
@@ -150,7 +150,7 @@ class Export:
             # Blender 4.0 and later have this option.
             settings['gltf_animation_mode'] = 'ACTIVE_ACTIONS'
 
-        # Of armatures that no action moves, the pose is written. Only the start and the end of an export look at the frame.
+        # The exporter writes the pose of an armature that no action moves. It reads the setting only at the start and at the end.
         self.temporary.set_item(settings, 'gltf_current_frame', True)
         # Blender 3.6 and later.
         settings['gltf_rest_position_armature'] = False

@@ -126,7 +126,7 @@ class Collector:
         self.materials = {}
         # By the name of a material: its custom property gnomon_thickness.
         self.thicknesses = {}
-        # By the name of a material: the placing of its images.
+        # The placing of the images of each material, by its name.
         self.placings = {}
         self.remarks = []
         self.last = None

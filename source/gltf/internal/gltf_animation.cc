@@ -74,7 +74,7 @@ class AnimationImporter {
     std::map<int, std::size_t> node_places;
     std::set<std::string> targets;
     bool has_fault = false;
-    // Its animation can be played, and moves nothing.
+    // Such an animation can be played. It moves nothing.
     bool has_unused_target = false;
     for (const Model::AnimationChannel &channel : source.channels) {
       try {

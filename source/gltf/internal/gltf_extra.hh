@@ -50,7 +50,7 @@ struct Range {
   return {double(float(row.min)) * factor, double(float(row.max)) * factor, row.least * factor, row.zero};
 }
 
-/** Of the property of a T that is named \a name. */
+/** The range of the property \a name of a T. \a factor: as above. */
 template <typename T>
 [[nodiscard]] Range range_of(std::string_view name, double factor = 1.0)
 {

@@ -73,7 +73,7 @@ class MaterialReader {
   StandIns &stand_ins_;
   Warnings &warnings_;
   Material result_;
-  /** As the file has it, without the strength. */
+  /** The emissive factor of the file, before its strength multiplies it. */
   glm::vec3 emissive_factor_{0.0F};
   /** A copy of `result_` with 0.5 for each factor that moves. It decides which textures have an effect at some time. */
   Material moving_;
@@ -133,8 +133,8 @@ class MaterialReader {
     if (ior != (*source)[0]) {
       warnings_.add(what_, "ior is " + text((*source)[0]) + ", clamped to " + text(ior));
     }
-    // As a float, as the exporter has it, so that the quotient of both is exactly 1. A tint beyond the limit reflects
-    // all light, as the limit does.
+    // The exporter divides by the same float, so that the tint is exactly the file's again. A tint beyond the limit
+    // reflects all light, as the limit does.
     const scene::Description row = scene::description_of<Material>("specular_color");
     const float ratio = reflectance_ratio(static_cast<float>(ior));
     for (int i = 0; i < 3; i++) {
@@ -156,8 +156,8 @@ class MaterialReader {
     }
     const double distance = (*source)[0];
     if (distance > 0.0) {
-      // At least the minimum: 0 means that nothing is absorbed. Exporters write the largest number for that, so that a
-      // number beyond the limit needs no warning.
+      // A distance of 0 would mean that nothing is absorbed, therefore the minimum limits it. Exporters write the
+      // largest number if nothing is absorbed, therefore a number beyond the maximum needs no warning.
       const scene::Description row = scene::description_of<Material>("attenuation_distance");
       result_.attenuation_distance = static_cast<float>(std::clamp(distance, row.min, row.max));
     }

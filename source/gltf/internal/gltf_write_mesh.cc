@@ -30,7 +30,7 @@ using scene::TextureWrap;
 
 namespace {
 
-/** Of the extensions of a material. */
+/** The start of the paths of a material's extensions. */
 constexpr std::string_view extensions_path = "extensions/";
 
 /** The name that the importer gives to a primitive without a name. */
@@ -241,7 +241,7 @@ void MeshWriter::add_positions(std::string_view key, const std::vector<glm::vec3
 /** An object of a material, such as an extension or a texture slot. */
 struct MaterialPart {
   JsonText json;
-  /** It has another value than that of a material without it. */
+  /** Whether one of its values differs from the default of glTF. */
   bool is_needed = false;
 };
 
@@ -277,7 +277,7 @@ static void add_factors(const Material &material, const std::string &what, Mater
       }
     }
     else if constexpr (std::is_same_v<Value, float>) {
-      // Without the member, glTF has what 0 stands for.
+      // The scene has 0 for a value that glTF has no number for: the member is left out.
       if (value != 0.0F || row.zero.empty()) {
         add_member(parts, row.path, json_number(value, what), is_needed);
       }
@@ -316,7 +316,7 @@ int MeshWriter::material(Handle<Material> handle)
     add_member(parts, strength_path, json_number(strength, what), true);
   }
   for (const scene::TextureInput &input : scene::texture_inputs) {
-    // It has the slot's factor, if there is one.
+    // add_factors has added the slot's factor, if it has one.
     JsonText &slot = parts[input.path].json;
     if (add_slot(slot, material.*input.slot, what)) {
       add_member(parts, input.path, slot.object(), true);

@@ -250,7 +250,7 @@ bool Checker::check_bytes(const StageSource &source)
       continue;
     }
     is_any = true;
-    // Of ASCII, every second byte is 0 in UTF-16, and three of four in UTF-32.
+    // Text of ASCII has a 0 as every second byte in UTF-16, and as three bytes of four in UTF-32.
     const std::string_view first = file.text.substr(0, 4);
     const std::string_view mark("\xFF\xFE\0\0\xFE\xFF", 6);
     const bool is_utf32 =

@@ -246,9 +246,9 @@ class LoopSteps : public TIntermTraverser {
   }
 
   std::set<std::string> stepped_;
-  /** By the value that an assignment by arithmetic sets: the values that it reads. */
+  /** The values that an assignment by arithmetic reads, by the value that it sets. */
   std::map<std::string, std::set<std::string>> arithmetic_;
-  /** By a value: the values that assignments compute from it. */
+  /** The values that assignments compute from a value, by that value. */
   std::map<std::string, std::set<std::string>> readers_;
 };
 
