@@ -466,12 +466,16 @@ class Splitter {
       }
       return;
     }
-    // Divide it by a line from the first vertex on a side to the opposite corner.
+    // Divide it by lines from all vertices on one side to the opposite corner. Only the first and the last triangle
+    // have another side of the whole, whose vertices divide them again.
     std::rotate(sides.begin(), cut, sides.end());
-    const std::uint32_t vertex = sides[0].cuts.front();
-    sides[0].cuts.erase(sides[0].cuts.begin());
-    add({Side{sides[0].start, {}}, Side{vertex, {}}, sides[2]});
-    add({Side{vertex, std::move(sides[0].cuts)}, std::move(sides[1]), Side{sides[2].start, {}}});
+    const std::vector<std::uint32_t> vertices = std::move(sides[0].cuts);
+    const std::uint32_t opposite = sides[2].start;
+    add({Side{sides[0].start, {}}, Side{vertices.front(), {}}, std::move(sides[2])});
+    for (std::size_t i = 1; i < vertices.size(); i++) {
+      mesh_.indices.insert(mesh_.indices.end(), {vertices[i - 1], vertices[i], opposite});
+    }
+    add({Side{vertices.back(), {}}, std::move(sides[1]), Side{opposite, {}}});
   }
 
   std::uint32_t vertex_at(std::uint32_t a, std::uint32_t b, const Cut &cut)

@@ -127,6 +127,28 @@ TEST_F(CloseJointsTest, LeaveGapsClosedBodiesAndOtherMaterials)
   EXPECT_EQ(scene.revision(), before);
 }
 
+TEST_F(CloseJointsTest, SplitAnEdgeAtThousandsOfVertices)
+{
+  constexpr std::uint32_t count = 4000;
+  Mesh fence;
+  for (std::uint32_t i = 0; i <= count; i++) {
+    for (const float height : {0.0F, 1.0F}) {
+      fence.positions.emplace_back(-2.0F + 4.0F * float(i) / float(count), height, -2.0F);
+      fence.normals.emplace_back(0, 0, 1);
+    }
+    for (const std::uint32_t corner : {0U, 2U, 3U, 0U, 3U, 1U}) {
+      if (i < count) {
+        fence.indices.push_back(2 * i + corner);
+      }
+    }
+  }
+  const Handle<Mesh> ground = add(floor());
+  add(fence);
+  close_joints(scene);
+  EXPECT_EQ(triangle_count(ground), 2 + count - 1);
+  EXPECT_NEAR(facing_area(ground), 16.0, 1e-5);
+}
+
 /** With more pairs of vertices and edges in one place than there may be, the search ends at once and edits nothing. */
 TEST_F(CloseJointsTest, EndInCrowds)
 {
