@@ -3,7 +3,7 @@
 // scripts/describe writes the files.
 #include "view_settings.hh"
 
-#include "eevee_engine_data.hh"
+#include "eevee_scene_renderer.hh"
 #include "eevee_settings.hh"
 #include "gltf_import.hh"
 
@@ -149,10 +149,10 @@ void print_properties_page()
   print_settings<view::WindowSettings>("The window alone", "render.");
 }
 
-std::string list_text(std::span<const std::string_view> names)
+std::string list_text(const std::vector<std::string> &names)
 {
   std::vector<std::string> items;
-  for (const std::string_view name : names) {
+  for (const std::string &name : names) {
     items.push_back(code(name));
   }
   return fmt::format("{}", fmt::join(items, ", "));
@@ -170,17 +170,9 @@ void print_frame_page()
   print_header("Steps", {"step", "", "passes", "reads", "writes"});
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   const scene::Scene scene;
-  render_scene::RenderScene render_scene(*device, scene);
-  std::weak_ptr<eevee::SharedData> shared;
-  const eevee::Data data(render_scene, shared);
-  for (const eevee::DrawnStep &drawn : data.frame.steps()) {
-    const eevee::FrameStep &step = drawn.step;
-    std::vector<std::string_view> passes;
-    for (const eevee::FramePass &pass : step.passes) {
-      passes.push_back(pass.pass->name());
-    }
-    print_row(
-        {code(step.name), std::string(step.summary), list_text(passes), list_text(step.reads), list_text(step.writes)});
+  eevee::SceneRenderer renderer(*device, scene, {1, 1});
+  for (const eevee::StepDescription &step : renderer.inspect().steps()) {
+    print_row({code(step.name), step.summary, list_text(step.passes), list_text(step.reads), list_text(step.writes)});
   }
 }
 

@@ -2,10 +2,10 @@
 #include "eevee_engine.hh"
 
 #include "eevee_camera.hh"
-#include "eevee_engine_data.hh"
-#include "eevee_frame.hh"
-#include "eevee_material_variants.hh"
 #include "eevee_shaders.hh"
+#include "internal/eevee_engine_data.hh"
+#include "internal/eevee_frame.hh"
+#include "internal/eevee_material_variants.hh"
 
 #include "draw_view_shared.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_inspection.hh"
 
-#include "eevee_engine_data.hh"
-#include "eevee_frame.hh"
+#include "internal/eevee_engine_data.hh"
+#include "internal/eevee_frame.hh"
 
 #include "shadows/shadow_cube.hh"
 
@@ -208,6 +208,22 @@ const ShadowCounters &Inspection::shadow_counters() const
 void Inspection::invalidate_shadows() const
 {
   engine_data().shared->shadows.invalidate();
+}
+
+std::vector<StepDescription> Inspection::steps() const
+{
+  std::vector<StepDescription> steps;
+  for (const DrawnStep &drawn : engine_data().frame.steps()) {
+    const FrameStep &step = drawn.step;
+    StepDescription &description =
+        steps.emplace_back(StepDescription{std::string(step.name), std::string(step.summary)});
+    for (const FramePass &pass : step.passes) {
+      description.passes.push_back(pass.pass->name());
+    }
+    description.reads.assign(step.reads.begin(), step.reads.end());
+    description.writes.assign(step.writes.begin(), step.writes.end());
+  }
+  return steps;
 }
 
 std::string Inspection::serialize_passes() const

@@ -20,6 +20,21 @@ struct StepTime {
   double seconds = 0.0;
 };
 
+/** A step of the frame, as its module describes it. */
+struct StepDescription {
+  std::string name;
+  /** Markdown. */
+  std::string summary;
+  /** The names of its passes. */
+  std::vector<std::string> passes{};
+  /**
+   * Names of textures and buffers: those written by steps that the step reads, and those that it writes. "target"
+   * stands for the attachments of a draw's target.
+   */
+  std::vector<std::string> reads{};
+  std::vector<std::string> writes{};
+};
+
 /** The surface at the centre of each pixel, and the visibility of one lamp there. Rows from the bottom. */
 struct Probe {
   /** xyz: position relative to RenderScene::origin_ws, metres. w: visibility of the lamp, in [0, 1]. */
@@ -73,6 +88,8 @@ class Inspection {
    * Times of the samples that were submitted since the last call, for which it waits. Empty unless Settings::is_timed.
    */
   [[nodiscard]] std::vector<StepTime> take_step_times() const;
+  /** All steps of a frame, needed or not, in the order in which they are drawn. No sync is necessary. */
+  [[nodiscard]] std::vector<StepDescription> steps() const;
   /** The recorded passes as text. Empty before the first draw in which an object or a background is visible. */
   [[nodiscard]] std::string serialize_passes() const;
   /**

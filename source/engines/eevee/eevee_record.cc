@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Creates the resources of a frame and records its passes. Unchanged resources and passes of objects are kept.
 #include "eevee_engine.hh"
-#include "eevee_engine_data.hh"
+#include "internal/eevee_engine_data.hh"
 
-#include "eevee_surface_functions.hh"
+#include "internal/eevee_surface_functions.hh"
 
 namespace gnomon::eevee {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
-#include "eevee_material_variants.hh"
-#include "eevee_report_source.hh"
-#include "eevee_surface_functions.hh"
+#include "internal/eevee_material_variants.hh"
+#include "internal/eevee_report_source.hh"
+#include "internal/eevee_surface_functions.hh"
 
 #include "eevee_inspection.hh"
 #include "render_blend_order.hh"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "unlit_engine.hh"
 
+#include "internal/unlit_engine_data.hh"
 #include "unlit_depth_camera.hh"
-#include "unlit_engine_data.hh"
 #include "unlit_interfaces.hh"
 
 #include "draw_view_shared.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Records the passes of a viewport's surfaces, and orders those that are blended.
-#include "unlit_engine_data.hh"
+#include "internal/unlit_engine_data.hh"
 
 #include "render_blend_order.hh"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Adaptive sampling as the driver draws it, compared with pictures whose pixels all get all samples.
-#include "eevee_adaptive.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
+#include "internal/eevee_adaptive.hh"
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>

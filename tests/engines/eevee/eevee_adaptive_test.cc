@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Adaptive sampling on the null backend: the order of the samples, when it applies, and what it rejects.
-#include "eevee_adaptive.hh"
+#include "internal/eevee_adaptive.hh"
 #include "eevee_pixel_filter.hh"
 #include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Steps name what their command lists read and write.
-#include "eevee_frame_check.hh"
-#include "eevee_frame.hh"
+#include "internal/eevee_frame_check.hh"
+#include "internal/eevee_frame.hh"
 
 #include "gpu_device.hh"
 

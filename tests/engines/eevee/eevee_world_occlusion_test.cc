@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parts of a world's light that arrive at probes, against closed forms.
-#include "eevee_world_occlusion.hh"
+#include "internal/eevee_world_occlusion.hh"
 #include "eevee_sobol.hh"
 #include "eevee_test_scene.hh"
 
