@@ -13,8 +13,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -158,6 +161,46 @@ std::string list_text(const std::vector<std::string> &names)
   return fmt::format("{}", fmt::join(items, ", "));
 }
 
+/** What the steps read of each other, as a graph of Mermaid. */
+void print_graph(const std::vector<eevee::StepDescription> &steps)
+{
+  // The names that each arrow has. An arrow is dotted if its second step draws over what the first wrote.
+  std::map<std::tuple<std::size_t, std::size_t, bool>, std::vector<std::string>> arrows;
+  for (std::size_t i = 0; i < steps.size(); i++) {
+    const auto add = [&](const std::string &name, bool is_dotted) {
+      for (std::size_t k = 1; k < steps.size(); k++) {
+        const std::size_t writer = (i + steps.size() - k) % steps.size();
+        // Steps may read what the sample before them wrote.
+        const bool is_possible = writer < i || (!is_dotted && !steps[writer].is_of_target);
+        if (is_possible && std::ranges::count(steps[writer].writes, name) > 0) {
+          arrows[{writer, i, is_dotted}].push_back(name);
+          return;
+        }
+      }
+    };
+    for (const std::string &name : steps[i].reads) {
+      add(name, false);
+    }
+    for (const std::string &name : steps[i].writes) {
+      if (std::ranges::count(steps[i].reads, name) == 0) {
+        add(name, true);
+      }
+    }
+  }
+  fmt::print(
+      "\n## Graph\n\n"
+      "An arrow goes from the last step that writes textures or buffers to each step that reads them; a dotted one to "
+      "the step that draws over them. An arrow back is for the next sample. For steps that a scene does not need, "
+      "follow the dotted arrow back.\n\n"
+      "```mermaid\nflowchart TD\n");
+  for (const auto &[arrow, names] : arrows) {
+    const auto &[from, to, is_dotted] = arrow;
+    fmt::print("  {} {}|{}| {}\n", steps[from].name, is_dotted ? "-.->" : "-->", fmt::join(names, ", "),
+               steps[to].name);
+  }
+  fmt::print("```\n");
+}
+
 void print_frame_page()
 {
   fmt::print(
@@ -171,9 +214,11 @@ void print_frame_page()
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   const scene::Scene scene;
   eevee::SceneRenderer renderer(*device, scene, {1, 1});
-  for (const eevee::StepDescription &step : renderer.inspect().steps()) {
+  const std::vector<eevee::StepDescription> steps = renderer.inspect().steps();
+  for (const eevee::StepDescription &step : steps) {
     print_row({code(step.name), step.summary, list_text(step.passes), list_text(step.reads), list_text(step.writes)});
   }
+  print_graph(steps);
 }
 
 }  // namespace

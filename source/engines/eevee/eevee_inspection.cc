@@ -222,6 +222,7 @@ std::vector<StepDescription> Inspection::steps() const
     }
     description.reads.assign(step.reads.begin(), step.reads.end());
     description.writes.assign(step.writes.begin(), step.writes.end());
+    description.is_of_target = step.when == FrameStep::When::EachTarget;
   }
   return steps;
 }

@@ -33,6 +33,8 @@ struct StepDescription {
    */
   std::vector<std::string> reads{};
   std::vector<std::string> writes{};
+  /** Drawn with each draw that has a target. Otherwise with each sample of the picture. */
+  bool is_of_target = false;
 };
 
 /** The surface at the centre of each pixel, and the visibility of one lamp there. Rows from the bottom. */
