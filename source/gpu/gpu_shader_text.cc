@@ -55,6 +55,18 @@ bool TextScanner::is_at_end() const
   return rest.empty() || rest.starts_with("//");
 }
 
+std::vector<std::string_view> lines_of(std::string_view text)
+{
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    lines.push_back(line.ends_with('\r') ? line.substr(0, end - 1) : line);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
 std::string_view directive_of(std::string_view line)
 {
   // Asked of every line of every variant, and few lines are directives.

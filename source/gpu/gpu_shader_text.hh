@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace gnomon::gpu {
 
@@ -38,6 +39,9 @@ class TextScanner {
 
 /** Whether \a c is a letter, a digit or `_`. */
 [[nodiscard]] bool is_word_character(char c);
+
+/** The lines of \a text without their ends. */
+[[nodiscard]] std::vector<std::string_view> lines_of(std::string_view text);
 
 /** Returns NAME for a line `#NAME …`, and an empty string for all other lines. */
 [[nodiscard]] std::string_view directive_of(std::string_view line);

@@ -137,6 +137,29 @@ TEST(Preprocess, PragmaOnceIsLeftOutAndItsLineKept)
   expect_contains(preprocessed(texts), "#line 1 1\n\nbroken_here\n#endif\n#line 3 0\n");
 }
 
+TEST(Preprocess, LeavesOutBranchesThatNoCompilerReads)
+{
+  const ShaderTexts texts{
+      {{"main", VERSION + "#ifdef PLAIN\n#include \"lib\"\n#elif defined(OTHER)\n#include \"lost\"\n" +
+                    "#else\nskipped\n#endif\nafter\n"},
+       {"lib", "#define OTHER\nlibrary\n"}}};
+  const std::string with = preprocessed(texts, {"PLAIN"});
+  EXPECT_EQ(count_of(with, "library"), 1U);
+  EXPECT_EQ(count_of(with, "skipped"), 0U);
+  expect_contains(with, "#else\n\n#endif\n");
+  const std::string without =
+      preprocessed({{{"main", VERSION + "#ifdef PLAIN\n#include \"lost\"\n#else\nkept\n#endif\n"}}});
+  expect_contains(without, "#ifdef PLAIN\n\n#else\nkept\n#endif\n");
+}
+
+TEST(Preprocess, KeepsBranchesThatCompilersDecide)
+{
+  for (const char *condition : {"#ifdef VULKAN", "#ifndef GL_KHR_vulkan_glsl", "#if 0", "#if __VERSION__ > 450",
+                                "#if !defined(A) && COUNT > 2", "#ifdef A B"}) {
+    expect_contains(preprocessed({{{"main", VERSION + condition + "\nkept\n#endif\n"}}}), "kept");
+  }
+}
+
 TEST(ShaderSource, NamesTheFilesOfALog)
 {
   const ShaderSource source{ShaderStage::Vertex, "", {"main.glsl", "lib.glsl"}};
