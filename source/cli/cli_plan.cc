@@ -5,8 +5,8 @@
 #include "cli_frames.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
-#include "cli_render.hh"
 #include "cli_render_options.hh"
+#include "cli_render_scene.hh"
 #include "cli_system.hh"
 #include "cli_work_plan.hh"
 

@@ -368,6 +368,23 @@ void annotate(const py::object &type, const Fields<T> &fields)
   type.attr("__annotations__") = types;
 }
 
+/**
+ * Gives the module the types of the arguments that a function takes by \a fields, from which the stub is made.
+ * \return the text about them for the function's documentation
+ */
+template <typename T>
+[[nodiscard]] std::string add_arguments(py::module_ &module, const char *name, const Fields<T> &fields)
+{
+  const py::object types = py::module_::import("types").attr("SimpleNamespace")();
+  annotate(types, fields);
+  module.attr(name) = types;
+  std::string text = " Further arguments:";
+  for (const Field<T> &field : fields) {
+    text += fmt::format("\n\n`{}`: {}", field.name, field.doc);
+  }
+  return text;
+}
+
 /** Sets the properties of \a value that \a values names. \a label: names the value in messages */
 template <typename T>
 void set_fields(const Fields<T> &fields, const std::string &label, const ScenePtr &scene, T &value,

@@ -471,7 +471,7 @@ void define_answers(py::module_ &module)
                     "The value in pictures of Renderer.offline with 64 samples.");
 }
 
-void define_drawing(py::class_<Renderer, std::shared_ptr<Renderer>> &renderer)
+void define_drawing(py::module_ &module, py::class_<Renderer, std::shared_ptr<Renderer>> &renderer)
 {
   renderer.def("render", &render, py::arg("camera") = py::none(), py::arg("seconds_max") = infinite,
                py::arg("progress") = py::none(),
@@ -489,14 +489,15 @@ void define_drawing(py::class_<Renderer, std::shared_ptr<Renderer>> &renderer)
       "draw", &draw, py::arg("seconds"), py::arg("framebuffer"), py::arg("framebuffer_size"),
       py::arg("rectangle") = py::none(), py::arg("camera") = py::none(), py::kw_only(), py::arg("encoding") = "display",
       py::arg("over") = false, py::arg("clip_from_view") = py::none(),
-      "As refine(), into a framebuffer of the host, for devices of Device(host=True). Returns whether the picture is "
-      "complete.\n\n"
-      "`framebuffer`: its name in OpenGL; 0: the window's. `framebuffer_size`: width and height, pixels. `rectangle`: "
-      "left, bottom, width and height in it, pixels; None: all of it. A picture of another size is scaled. `encoding`: "
-      "'display', 'linear' (scene-linear, for formats of floating point), or 'srgb' (for sRGB formats, which apply the "
-      "transfer function). `over`: blend the picture over the content. `clip_from_view`: the host's projection, depth "
-      "from -1 to 1; the picture's depth is then written, and with `over` compared. Further arguments: view_transform, "
-      "'standard', 'raw', 'agx' or 'pbr-neutral' (default); exposure, stops.");
+      ("As refine(), into a framebuffer of the host, for devices of Device(host=True). Returns whether the picture is "
+       "complete.\n\n"
+       "`framebuffer`: its name in OpenGL; 0: the window's. `framebuffer_size`: width and height, pixels. `rectangle`: "
+       "left, bottom, width and height in it, pixels; None: all of it. A picture of another size is scaled. "
+       "`encoding`: 'display', 'linear' (scene-linear, for formats of floating point), or 'srgb' (for sRGB formats, "
+       "which apply the transfer function). `over`: blend the picture over the content. `clip_from_view`: the host's "
+       "projection, depth from -1 to 1; the picture's depth is then written, and with `over` compared." +
+       add_arguments(module, "_DrawProperties", display_fields))
+          .c_str());
   renderer.def(
       "layers", &layers, py::arg("names"), py::arg("camera") = py::none(), py::arg("progress") = py::none(),
       "Draw a picture and layers of it, from the same samples: a dictionary of arrays, with the top row first, by "
@@ -544,7 +545,7 @@ void define_renderer(py::module_ &module)
       "Width and height of the picture, pixels.");
   renderer.def_static("descriptions", &descriptions,
                       "A Description of each property, by its name, for programs that show them.");
-  define_drawing(renderer);
+  define_drawing(module, renderer);
   renderer.def("report", &Renderer::report, "A Report on the last picture.");
 
   module.def("cryptomatte_id", &eevee::cryptomatte_id, py::arg("name"),

@@ -225,14 +225,23 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
   return {scene, scene->edited().add(std::move(mesh))};
 }
 
+/** The options that are no arguments of their own. */
+Fields<gltf::ImportOptions> further_import_fields()
+{
+  Fields<gltf::ImportOptions> fields = property_fields<gltf::ImportOptions>();
+  std::erase_if(fields, [](const auto &field) { return field.name == "variant"; });
+  return fields;
+}
+
+const Fields<gltf::ImportOptions> import_fields = further_import_fields();
+
 /** \a progress: called with the completed fraction. An exception that it raises, or a signal, ends the import. */
 ScenePtr load(const std::filesystem::path &path, const std::string &variant, const py::object &progress,
               const std::optional<std::filesystem::path> &only_below, const py::kwargs &values)
 {
-  static const auto fields = property_fields<gltf::ImportOptions>();
   gltf::ImportOptions options{.variant = variant,
                               .only_below = only_below && only_below->empty() ? "." : only_below.value_or("")};
-  set_fields(fields, "load", nullptr, options, values);
+  set_fields(import_fields, "load", nullptr, options, values);
   const auto scene = std::make_shared<SharedScene>();
   // The importer would take it for an error of the file.
   std::exception_ptr raised;
@@ -381,13 +390,11 @@ void define_scene(py::module_ &module)
   module.def(
       "load", &load, py::arg("path"), py::arg("variant") = "", py::arg("progress") = py::none(),
       py::arg("only_below") = py::none(),
-      "Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
-      "the part that is done, 0 to 1; what it raises ends the import. `only_below`: a folder; files that the scene "
-      "names elsewhere are refused. `texture_size_max`: most texels along an edge of an image of a material; larger "
-      "ones are reduced. `image_bytes_max`: most bytes of all images. `element_count_max`: most vertices and indices "
-      "of "
-      "all meshes. `lamp_units`: \"raw\" for files that were exported unitless, \"auto\" to find out. Raises "
-      "FileError.");
+      ("Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
+       "the part that is done, 0 to 1; what it raises ends the import. `only_below`: a folder; files that the scene "
+       "names elsewhere are refused. Raises FileError." +
+       add_arguments(module, "_LoadProperties", import_fields))
+          .c_str());
 }
 
 }  // namespace gnomon::python

@@ -38,7 +38,7 @@ def main(folder, template, output):
             if of_values:
                 lines += [f"    {name}: {of_values[1]}" for name in getattr(gnomon, of_values[1]).__members__]
             elif of_properties:
-                types = dict(getattr(gnomon, of_properties[1]).__annotations__)
+                types = dict(getattr(gnomon._gnomon, of_properties[1]).__annotations__)
                 types.pop(of_properties[2], None)
                 lines += [f"    {text}" for text in properties(types, is_dictionary)]
             else:

@@ -1039,6 +1039,10 @@ class Stub(unittest.TestCase):
                 thing.edit(nonsense=1)
             taken = set(str(raised.exception).split("it has: ")[1].split(", "))
             self.assertEqual(properties.pop(f"_{type(thing).__name__}Properties"), taken)
+        with self.assertRaisesRegex(TypeError, "it has: (.*)") as raised:
+            gnomon.load(PLAZA, nonsense=1)
+        self.assertEqual(properties.pop("_LoadProperties"), set(str(raised.exception).split("it has: ")[1].split(", ")))
+        self.assertEqual(properties.pop("_DrawProperties"), {"view_transform", "exposure"})
         own = {each for each, member in vars(gnomon.Renderer).items() if isinstance(member, property)}
         self.assertEqual(properties, {"_RendererProperties": {"sample_count"},
                                       "_OfflineProperties": own - {"size", "sample_count"}})
@@ -1048,7 +1052,7 @@ class Stub(unittest.TestCase):
         """The examples of the documentation have the types of the stub, which find mistakes."""
         with open("doc/python.md", encoding="utf-8") as file:
             examples = "".join(re.findall(r"^```python\n(.*?)^```$", file.read(), re.M | re.S))
-        mistakes = ["gnomon.Scene().add_lamp(intensty=1)", "gnomon.Scene().add_lamp(kind=3)", "gnomon.load(3)",
+        mistakes = ["gnomon.Scene().add_lamp(intensty=1)", "gnomon.Scene().add_lamp(kind=3)", "gnomon.load(3)", 'gnomon.load("a.glb", lamp_units="watt")',
                     "gnomon.Scene().meshes[0].edit(positions=[(0, 0, 0)])", "gnomon.Scene().lamps[0].power = 3"]
         with tempfile.TemporaryDirectory() as folder:
             def checked(text):

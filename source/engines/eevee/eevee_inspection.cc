@@ -220,7 +220,9 @@ std::vector<StepDescription> Inspection::steps() const
     for (const FramePass &pass : step.passes) {
       description.passes.push_back(pass.pass->name());
     }
-    description.reads.assign(step.reads.begin(), step.reads.end());
+    for (const FrameRead &read : step.reads) {
+      description.reads.emplace_back(read.name);
+    }
     description.writes.assign(step.writes.begin(), step.writes.end());
     description.is_of_target = step.when == FrameStep::When::EachTarget;
   }

@@ -108,7 +108,8 @@ FrameNode read_node(const FrameStep &step, std::span<const FrameStep *const> dra
                     const std::set<std::string_view> &live)
 {
   std::vector<std::string> reads;
-  for (const std::string_view name : step.reads) {
+  for (const FrameRead &read : step.reads) {
+    const std::string_view name = read.name;
     const auto writer = std::ranges::find_if(drawn_before.rbegin(), drawn_before.rend(), [&](const FrameStep *before) {
       return std::ranges::find(before->writes, name) != before->writes.end();
     });

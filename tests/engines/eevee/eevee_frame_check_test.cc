@@ -24,10 +24,10 @@ class FrameCheckTest : public testing::Test {
     list.end_pass();
     lookup.begin_pass("look up", other, {});
     lookup.bind_texture(0, picture.id(), sampler.id());
+    lookup.draw_procedural(3, 1);
     lookup.end_pass();
   }
-  void check(const gpu::CommandList &commands, std::vector<std::string_view> reads,
-             std::vector<std::string_view> writes)
+  void check(const gpu::CommandList &commands, std::vector<FrameRead> reads, std::vector<std::string_view> writes)
   {
     frame_check.check({.name = "step",
                        .summary = "",
@@ -35,7 +35,7 @@ class FrameCheckTest : public testing::Test {
                        .need = {},
                        .reads = std::move(reads),
                        .writes = std::move(writes)},
-                      commands, *device);
+                      {.settings = settings}, commands, *device);
   }
 
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -50,6 +50,7 @@ class FrameCheckTest : public testing::Test {
   gpu::CommandList list;
   /** Draws the result from the picture. */
   gpu::CommandList lookup;
+  Settings settings;
   FrameCheck frame_check;
 };
 
@@ -67,6 +68,21 @@ TEST_F(FrameCheckTest, AStepNamesWhatItReadsOfOtherSteps)
   check(list, {}, {"block", "picture"});
   EXPECT_THROW(check(lookup, {}, {"result"}), gpu::InternalError);
   EXPECT_NO_THROW(check(lookup, {"picture"}, {"result"}));
+}
+
+TEST_F(FrameCheckTest, AListThatDrawsBindsWhatItsStepNames)
+{
+  EXPECT_NO_THROW(check(lookup, {"picture", "block"}, {"result"})) << "no step has written the block";
+  check(list, {}, {"block", "picture"});
+  EXPECT_THROW(check(lookup, {"picture", "block"}, {"result"}), gpu::InternalError);
+  EXPECT_NO_THROW(check(lookup, {"picture", {"block", "lights"}}, {"result"})) << "it binds nothing of the group";
+  EXPECT_THROW(check(lookup, {{"picture", "lights"}, {"block", "lights"}}, {"result"}), gpu::InternalError);
+  const auto read_if = [](bool is_read) {
+    return FrameRead{"block", {}, [is_read](const FrameState &) { return is_read; }};
+  };
+  EXPECT_THROW(check(lookup, {"picture", read_if(true)}, {"result"}), gpu::InternalError);
+  EXPECT_NO_THROW(check(lookup, {"picture", read_if(false)}, {"result"}));
+  EXPECT_NO_THROW(check(list, {"result"}, {"block", "picture"})) << "it does not draw";
 }
 
 TEST_F(FrameCheckTest, AnAttachmentThatIsNotWrittenIsRead)

@@ -41,16 +41,29 @@ static bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
   return true;
 }
 
-std::vector<std::string_view> deferred_reads()
+/** Where the objects in the view are tinted and not lit, lists read the tinted lamp alone. */
+static bool reads_all_lights(const FrameState &state)
 {
-  return {"depth",       "view_block",  "light_block",  "light_texture", "light_cluster_block",
-          "light_lists", "world_block", "shadow_cubes", "shadow_maps"};
+  return !state.settings.has_cascade_tint;
 }
 
-std::vector<std::string_view> forward_reads(std::initializer_list<std::string_view> more)
+std::vector<FrameRead> deferred_reads()
 {
-  std::vector<std::string_view> reads = deferred_reads();
-  reads.insert(reads.end(), {"shadow_esm", "shadow_esm_half", "shadow_evsm"});
+  return {"depth",
+          "view_block",
+          {"light_block", "lights"},
+          {"light_texture", "lights", reads_all_lights},
+          {"light_cluster_block", "lights", reads_all_lights},
+          {"light_lists", "lights", reads_all_lights},
+          {"world_block", "lights", reads_all_lights},
+          {"shadow_cubes", "shadows"},
+          {"shadow_maps", "shadows"}};
+}
+
+std::vector<FrameRead> forward_reads(std::initializer_list<FrameRead> more)
+{
+  std::vector<FrameRead> reads = deferred_reads();
+  reads.insert(reads.end(), {{"shadow_esm", "shadows"}, {"shadow_esm_half", "shadows"}, {"shadow_evsm", "shadows"}});
   reads.insert(reads.end(), more);
   return reads;
 }
@@ -83,6 +96,15 @@ Frame::Frame(std::vector<FrameStep> steps)
     drawn.passes.resize(step.passes.size());
     drawn.step = std::move(step);
   }
+#ifndef NDEBUG
+  for (const DrawnStep &drawn : steps_) {
+    for (const FrameRead &read : drawn.step.reads) {
+      const bool is_written = std::ranges::any_of(
+          steps_, [&](const DrawnStep &other) { return std::ranges::count(other.step.writes, read.name) > 0; });
+      GNOMON_ASSERT(is_written, "step '{}' names '{}', which no step writes", drawn.step.name, read.name);
+    }
+  }
+#endif
 }
 
 void Frame::begin_picture()
@@ -134,7 +156,7 @@ void Frame::draw(FrameSample &sample, FrameStep::When when)
     if (has_commands) {
       device.submit(list);
 #ifndef NDEBUG
-      check_.check(step, list, device);
+      check_.check(step, sample, list, device);
 #endif
     }
     if (step.work) {

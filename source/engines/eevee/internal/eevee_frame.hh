@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /**
@@ -94,6 +95,20 @@ struct FramePass {
   std::function<std::string_view(const FrameState &)> why_empty{};
 };
 
+/** A texture or a buffer that a step reads, and that another step writes. */
+struct FrameRead {
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  FrameRead(const char *read, std::string_view group_name = {}, std::function<bool(const FrameState &)> condition = {})
+      : name(read), group(group_name), when(std::move(condition))
+  {
+  }
+  std::string_view name;
+  /** Lists bind all of a group or none, as programs without lighting. Empty: each list that draws binds it. */
+  std::string_view group;
+  /** The condition under which lists bind it. Empty: always. */
+  std::function<bool(const FrameState &)> when;
+};
+
 struct FrameStep {
   std::string_view name;
   /** Markdown for doc/frame.md. */
@@ -109,10 +124,10 @@ struct FrameStep {
   /** Decides whether the step is drawn. Called before each sample or target. */
   std::function<Need(const FrameState &)> need;
   /**
-   * Names of textures and buffers: those written by steps that the step reads, and those that it writes. "target"
-   * stands for the attachments of the draw's target. Builds with assertions check both lists. \see FrameCheck
+   * What the step reads, and the names of textures and buffers that it writes. "target" stands for the attachments of
+   * the draw's target. Builds with assertions check both lists. \see FrameCheck
    */
-  std::vector<std::string_view> reads{};
+  std::vector<FrameRead> reads{};
   std::vector<std::string_view> writes{};
   /** In the order in which they are drawn. */
   std::vector<FramePass> passes{};
@@ -204,9 +219,9 @@ inline gpu::Texture create_target(gpu::Device &device, const char *name, gpu::Fo
 using BindLit = std::function<void(draw::ShadingGroup &)>;
 
 /** FrameStep::reads of deferred lighting. */
-[[nodiscard]] std::vector<std::string_view> deferred_reads();
+[[nodiscard]] std::vector<FrameRead> deferred_reads();
 /** FrameStep::reads of a step that draws and lights surfaces; \a more: what it reads besides. */
-[[nodiscard]] std::vector<std::string_view> forward_reads(std::initializer_list<std::string_view> more = {});
+[[nodiscard]] std::vector<FrameRead> forward_reads(std::initializer_list<FrameRead> more = {});
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";

@@ -16,6 +16,11 @@ static bool is_named(const std::vector<std::string_view> &names, std::string_vie
   return std::ranges::find(names, name) != names.end();
 }
 
+static bool is_named(const std::vector<FrameRead> &reads, std::string_view name)
+{
+  return std::ranges::find(reads, name, &FrameRead::name) != reads.end();
+}
+
 void FrameCheck::collect(const gpu::CommandList &list, const gpu::Device &device, bool has_attachments)
 {
   reads_.clear();
@@ -55,7 +60,30 @@ void FrameCheck::collect(const gpu::CommandList &list, const gpu::Device &device
   }
 }
 
-void FrameCheck::check(const FrameStep &step, const gpu::CommandList &list, const gpu::Device &device)
+void FrameCheck::check_bound(const FrameStep &step, const FrameState &state, const gpu::Device &device) const
+{
+  const auto is_bound = [&](const FrameRead &read) {
+    return std::ranges::any_of(
+        reads_, [&](const Resource &resource) { return device.name_of(resource.first, resource.second) == read.name; });
+  };
+  const auto is_group_bound = [&](std::string_view group) {
+    return std::ranges::any_of(step.reads,
+                               [&](const FrameRead &read) { return read.group == group && is_bound(read); });
+  };
+  for (const FrameRead &read : step.reads) {
+    if (is_bound(read) || (read.when && !read.when(state)) || (!read.group.empty() && !is_group_bound(read.group))) {
+      continue;
+    }
+    const bool is_there = std::ranges::any_of(written_, [&](const Resource &resource) {
+      return device.find(resource.first, resource.second) &&
+             device.name_of(resource.first, resource.second) == read.name;
+    });
+    GNOMON_ASSERT(!is_there, "step '{}' names '{}' as read, and its list does not bind it", step.name, read.name);
+  }
+}
+
+void FrameCheck::check(const FrameStep &step, const FrameState &state, const gpu::CommandList &list,
+                       const gpu::Device &device)
 {
   // A host names the attachments of its target.
   collect(list, device, !is_named(step.writes, "target"));
@@ -73,6 +101,12 @@ void FrameCheck::check(const FrameStep &step, const gpu::CommandList &list, cons
     GNOMON_ASSERT(!std::ranges::binary_search(written_, Resource(kind, id)) || is_named(step.reads, name) ||
                       is_named(step.writes, name),
                   "step '{}' reads {} '{}', which its list lacks", step.name, gpu::to_string(kind), name);
+  }
+  const bool is_drawn = std::ranges::any_of(list.commands(), [](const gpu::Command &command) {
+    return command.kind == gpu::CommandKind::Draw || command.kind == gpu::CommandKind::DrawProcedural;
+  });
+  if (is_drawn) {
+    check_bound(step, state, device);
   }
 }
 

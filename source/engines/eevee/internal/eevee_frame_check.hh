@@ -8,6 +8,7 @@
 
 namespace gnomon::eevee {
 
+struct FrameState;
 struct FrameStep;
 
 /** Checks the names of a step's reads and writes against its command list. Internal to the engine. */
@@ -16,9 +17,10 @@ class FrameCheck {
   /**
    * \pre the list is valid on \a device
    * \throws gpu::InternalError with the step and the resource, if \a list writes a resource, or reads one that an
-   * earlier list wrote, and \a step does not name it. Uploads, copies and read-backs are not in lists.
+   * earlier list wrote, and \a step does not name it; or if \a list draws and does not bind a resource that an earlier
+   * list wrote and that \a step names as read. Uploads, copies and read-backs are not in lists.
    */
-  void check(const FrameStep &step, const gpu::CommandList &list, const gpu::Device &device);
+  void check(const FrameStep &step, const FrameState &state, const gpu::CommandList &list, const gpu::Device &device);
 
  private:
   /** A texture or a buffer. */
@@ -29,6 +31,8 @@ class FrameCheck {
     gpu::State write;
   };
 
+  /** \throws gpu::InternalError if \a step names a read that its list lacks, after collect */
+  void check_bound(const FrameStep &step, const FrameState &state, const gpu::Device &device) const;
   /** Sets reads_ and writes_. \a has_attachments: attachments count: as written if they are drawn or cleared, otherwise
    * as read. */
   void collect(const gpu::CommandList &list, const gpu::Device &device, bool has_attachments);

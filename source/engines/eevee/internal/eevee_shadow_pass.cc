@@ -253,7 +253,8 @@ FrameStep shadows_step(Shadows &shadows, ShadowPass &pass, const DepthFeedback &
                        : state.is_seen                  ? Need{true, "some layers were out of date"}
                                                         : Need{false, nothing_seen};
               },
-          .reads = {"depth"},
+          // The host fits cascades to them after they are read back.
+          .reads = {{"depth", {}, [](const FrameState &) { return false; }}},
           .writes = {"shadow_render_block", "shadow_cubes", "shadow_maps", "shadow_distance_cube", "shadow_esm",
                      "shadow_esm_half", "shadow_evsm", "esm_distance", "esm_rows"},
           .record =
