@@ -25,7 +25,7 @@ struct WorldParts {
   vec3 negative;
 };
 
-/** From the probes above the plane of \a surface; 1 if there are none. */
+/** From the probes above the plane of \a surface. */
 WorldParts world_parts(Surface surface)
 {
   if (WORLD_OCCLUSION == 0) {
@@ -42,9 +42,8 @@ WorldParts world_parts(Surface surface)
   vec3 share = above - low;
   ivec3 stride = 2 * ivec3(1, int(world.probe_count.x), int(world.probe_count.x * world.probe_count.y));
   int first = int(low.x) * stride.x + int(low.y) * stride.y + int(low.z) * stride.z;
-  // Where no probe counts, nothing is known to block the light.
   const float unknown = 1e-6;
-  WorldParts sum = WorldParts(vec3(unknown), vec3(unknown));
+  WorldParts sum = WorldParts(vec3(unknown * world.probe_count.w), vec3(unknown * world.probe_count.w));
   float weights = unknown;
   int corner = has_probes ? 0 : 7;
   // The test is at the end as in lights_radiance.

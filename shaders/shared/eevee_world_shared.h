@@ -49,7 +49,7 @@ struct WorldBlock {
   int sun_count;
   /** WORLD_SUN_POINTS for each sun. They draw highlights that are too narrow for the one direction of a sun in a sample. */
   WorldSunPoint sun_points[WORLD_SUN_MAX * WORLD_SUN_POINTS];
-  /** xyz: probes along each axis. 0: nothing blocks the light. */
+  /** xyz: probes along each axis. 0: nothing blocks the light. w: square root of the arriving part where no probe counts. */
   vec4 probe_count;
   /** xyz: the place of a position among the probes along each axis is position * scale + offset. */
   vec4 probe_scale;

@@ -11,14 +11,19 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace gnomon::render_scene {
 
-glm::dvec3 origin_near(const glm::dvec3 &position_ws, const glm::dvec3 &current)
+glm::dvec3 origin_near(const glm::dvec3 &position_ws, const glm::dvec3 &current, const scene::Bounds &bounds_ws)
 {
-  // Within 1.5 steps of the origin, floats are spaced by at most 0.12 mm. Multiples of a power of two are exact.
-  constexpr double step_m = 1024.0;
+  // Within 1.5 steps of the origin, floats are spaced by at most 0.12 mm, or a 40000th of the scene's radius. Multiples
+  // of a power of two are exact.
+  constexpr double step_max_m = 1024.0;
+  constexpr double step_min_m = 1e-6;
+  const double wanted_m = bounds_ws.is_empty() ? step_max_m : 256.0 * double(bounds_ws.radius());
+  const double step_m = std::exp2(std::floor(std::log2(std::clamp(wanted_m, step_min_m, step_max_m))));
   const glm::dvec3 offset = glm::abs(position_ws - current);
   return std::max({offset.x, offset.y, offset.z}) <= step_m ? current : step_m * glm::round(position_ws / step_m);
 }

@@ -515,7 +515,7 @@ void App::update_document()
   render_scene::RenderScene &render_scene = document_->render_scene();
   active().follow(*document_);
   const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
-  render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
+  render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws(), render_scene.bounds()));
   render_scene.update();
   window_.set_title(fmt::format("{}{} - gnomon", document_->scene().path, document_->is_saved() ? "" : "*"));
 }

@@ -811,22 +811,35 @@ TEST(OriginNear, KeepsTheCurrentOriginWithinItsStep)
 {
   const glm::dvec3 current(1024, 0, -2048);
   for (const glm::dvec3 &offset : {glm::dvec3(0), glm::dvec3(1000, -1000, 1000), glm::dvec3(0, 0, -1024)}) {
-    EXPECT_EQ(origin_near(current + offset, current), current);
+    EXPECT_EQ(origin_near(current + offset, current, {}), current);
   }
-  EXPECT_EQ(origin_near({1024 + 1025, 0, -2048}, current), glm::dvec3(2048, 0, -2048));
-  EXPECT_EQ(origin_near({1e6 + 0.5, -3, 600}, current), glm::dvec3(1024.0 * 977, 0, 1024));
+  EXPECT_EQ(origin_near({1024 + 1025, 0, -2048}, current, {}), glm::dvec3(2048, 0, -2048));
+  EXPECT_EQ(origin_near({1e6 + 0.5, -3, 600}, current, {}), glm::dvec3(1024.0 * 977, 0, 1024));
 }
 
 TEST(OriginNear, IsWithinAStepOfThePositionAndAMultipleOfIt)
 {
   for (const double coordinate : {0.0, 511.0, 513.0, -1e3, 1e6 + 0.5, -1e9}) {
     const glm::dvec3 position(coordinate, -coordinate, 0.5 * coordinate);
-    const glm::dvec3 origin = origin_near(position, glm::dvec3(0));
+    const glm::dvec3 origin = origin_near(position, glm::dvec3(0), {});
     for (int axis = 0; axis < 3; axis++) {
       EXPECT_LE(std::abs(position[axis] - origin[axis]), 1024.0);
       EXPECT_EQ(std::fmod(origin[axis], 1024.0), 0.0);
     }
   }
+}
+
+TEST(OriginNear, HasSmallStepsForASmallScene)
+{
+  // The radius is 1.73 mm, and the step 0.25 m.
+  const scene::Bounds small{glm::vec3(-1e-3F), glm::vec3(1e-3F)};
+  EXPECT_EQ(origin_near({0.2, -0.25, 0}, glm::dvec3(0), small), glm::dvec3(0));
+  EXPECT_EQ(origin_near({30.0, 0.3, 0}, glm::dvec3(0), small), glm::dvec3(30.0, 0.25, 0));
+  const scene::Bounds large{glm::vec3(-4), glm::vec3(4)};
+  EXPECT_EQ(origin_near({1000, 0, 0}, glm::dvec3(0), large), glm::dvec3(0));
+  // A point has no radius, and a bound above 1e19 m an infinite one.
+  EXPECT_EQ(origin_near({0.5, 0, 0}, glm::dvec3(0), {glm::vec3(1), glm::vec3(1)}).x, 0.5);
+  EXPECT_EQ(origin_near({1000, 0, 0}, glm::dvec3(0), {glm::vec3(-1e38F), glm::vec3(1e38F)}), glm::dvec3(0));
 }
 
 }  // namespace

@@ -221,6 +221,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     }
     data.blend.order(scene_, sample_view, data.visible, data.materials.transmissive, data.is_transmission_seen);
     update_view(viewport, data, sample_view);
+    data.shared->world.follow(view, viewport.device());
   }
   // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible,
   // unless the means of converged pixels must follow.

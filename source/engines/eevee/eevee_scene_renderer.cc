@@ -54,8 +54,8 @@ void SceneRenderer::follow(const scene::PlacedCamera &camera)
 {
   // Before the scene takes its position.
   render_scene::check(camera);
-  const glm::dvec3 origin_ws =
-      render_scene::origin_near(glm::dvec3(camera.world_from_camera[3]), render_scene_.origin_ws());
+  const glm::dvec3 origin_ws = render_scene::origin_near(glm::dvec3(camera.world_from_camera[3]),
+                                                         render_scene_.origin_ws(), render_scene_.bounds());
   if (origin_ws != render_scene_.origin_ws()) {
     render_scene_.set_origin(origin_ws);
     sync();

@@ -200,6 +200,16 @@ struct Room {
     test::add_lamp(scene, lamp, world_from_room * glm::inverse(glm::lookAt(distance * toward, glm::dvec3(0.0), up)));
   }
 
+  /** A ground that is much larger than the room, below it. */
+  void add_ground()
+  {
+    scene::Mesh mesh;
+    mesh.name = "ground";
+    const glm::dvec3 far = 100.0 * half;
+    add_side(mesh, {-far.x, -1.3 * half.y, -far.z}, {far.x, -1.3 * half.y, far.z}, 1, 1.0, 1.0);
+    test::add_object(scene, scene.add(std::move(mesh)), world_from_room);
+  }
+
   /** Whether one sample has exact shadows. A world has none then, and penumbrae are approximate. */
   [[nodiscard]] bool has_hard_shadows() const
   {
@@ -264,6 +274,20 @@ class ClosedRoomsGpuTest : public test::GpuDeviceTest {
     }
     return leaks;
   }
+  /** Draws the first \a count rooms in a world with one sample, every second one above a large ground. */
+  Leaks leaks_of_one_sample(unsigned count) const
+  {
+    Leaks leaks;
+    for (unsigned i = 0; i < count; i++) {
+      const unsigned joint = i % unsigned(Joint::Count);
+      Room room(i / unsigned(Joint::Count) * room_pairs + joint);
+      if (i % 2 == 1) {
+        room.add_ground();
+      }
+      add(leaks, room, 1, 0);
+    }
+    return leaks;
+  }
 
  private:
   void add(Leaks &leaks, Room &room, int sample_count, int layer_px) const
@@ -276,9 +300,11 @@ class ClosedRoomsGpuTest : public test::GpuDeviceTest {
     }
     test::Renderer renderer(*device, room.scene, picture_size_px, settings);
     int count = 0;
+    float largest = 0.0F;
     for (const glm::vec4 &pixel : renderer.picture(room.camera).pixels) {
       const float value = std::max({pixel.r, pixel.g, pixel.b});
       ASSERT_TRUE(std::isfinite(value));
+      largest = std::max(largest, value);
       if (value > 1e-4F) {
         count++;
         leaks.light += double(value);
@@ -288,8 +314,8 @@ class ClosedRoomsGpuTest : public test::GpuDeviceTest {
     leaks.pixels += count;
     if (count > 0) {
       leaks.shining++;
-      leaks.rooms += fmt::format("joint {}, light {}, {} samples: {} pixels\n", int(room.joint), int(room.outside),
-                                 sample_count, count);
+      leaks.rooms += fmt::format("joint {}, light {}, {} samples: {} pixels up to {}\n", int(room.joint),
+                                 int(room.outside), sample_count, count, largest);
     }
   }
 };
@@ -317,6 +343,15 @@ class SlowClosedRoomsGpuTest : public ClosedRoomsGpuTest {};
 TEST_F(SlowClosedRoomsGpuTest, AreBlackExceptForFewPixels)
 {
   expect_dark(leaks_of(1000, 1000 + 4 * room_pairs, 0), 0.25, 4e-3);
+}
+
+/** The probes of the occlusion are those that surfaces in the picture see, wherever the room is and however it is
+ * turned. */
+TEST_F(ClosedRoomsGpuTest, OneSampleInAWorldIsBlack)
+{
+  const Leaks leaks = leaks_of_one_sample(10);
+  EXPECT_EQ(leaks.pictures, 10);
+  EXPECT_EQ(leaks.shining, 0) << leaks.rooms;
 }
 
 /** The floor's edges lie within the lower edges of walls, and the ceiling's within the upper ones. */

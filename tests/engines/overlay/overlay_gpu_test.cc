@@ -208,7 +208,7 @@ TEST_F(OverlayGpuTest, EachPixelPicksTheObjectAndPositionThatItsRayMeetsFirst)
       scene.edit(node, [](scene::Node &hidden) { hidden.is_visible = false; });
     }
   }
-  render_scene->set_origin(render_scene::origin_near(middle, glm::dvec3(0)));
+  render_scene->set_origin(render_scene::origin_near(middle, glm::dvec3(0), {}));
   const reference::Tracer tracer(scene);
   const std::vector<scene::Object> objects = scene.objects();
   const glm::dmat4 world_from_clip =

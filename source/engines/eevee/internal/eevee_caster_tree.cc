@@ -201,7 +201,8 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
     casters_.push_back({.bounds_ws = scene.object(i).bounds,
                         .object = i,
                         .fingerprint = fingerprint_of(std::as_bytes(std::span(&print, 1)))});
-    instances_.push_back({tree.get(), glm::inverse(print.world_from_object), print.cover});
+    instances_.push_back(
+        {tree.get(), glm::inverse(print.world_from_object), print.cover, content.material_of(mesh).is_double_sided});
     boxes.push_back(scene.object(i).bounds);
   }
   tree_ = BoxTree(boxes);
@@ -215,14 +216,15 @@ static bool is_covered(float u, float v, double cover)
   return place - std::floor(place) < cover;
 }
 
-RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest) const
+template <typename Accept>
+void CasterTree::visit(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest, float t_max,
+                       Accept &&accept) const
 {
-  RayHit hit = RayHit::None;
-  float t_max = std::numeric_limits<float>::max();
   tree_.visit(origin_ws, direction_ws, t_max, [&](std::uint32_t i) {
     const Instance &instance = instances_[i];
     const glm::vec3 origin(instance.object_from_world * glm::vec4(origin_ws, 1.0F));
     const glm::vec3 direction(instance.object_from_world * glm::vec4(direction_ws, 0.0F));
+    bool is_over = false;
     instance.mesh->tree.visit(origin, direction, t_max, [&](std::uint32_t k) {
       // Möller and Trumbore 1997. The margin keeps rays from passing between triangles that share an edge.
       constexpr float margin = 1e-5F;
@@ -235,17 +237,51 @@ RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_
       const float u = glm::dot(from_corner, p) * inverse;
       const float v = glm::dot(direction, q) * inverse;
       const float t = glm::dot(triangle.edges[1], q) * inverse;
+      // The front is found in the space of the object, so that mirrored objects have theirs outside, too.
       if (determinant != 0.0F && u >= -margin && v >= -margin && u + v <= 1.0F + margin && t > 0.0F && t < t_max &&
-          is_covered(u, v, instance.cover)) {
+          is_covered(u, v, instance.cover) && accept(Meeting{i, k, t, determinant > 0.0F})) {
         t_max = t;
-        // In the space of the object, so that mirrored objects have their fronts outside, too.
-        hit = determinant > 0.0F ? RayHit::Front : RayHit::Back;
+        is_over = !is_nearest;
       }
-      return hit != RayHit::None && !is_nearest;
+      return is_over;
     });
-    return hit != RayHit::None && !is_nearest;
+    return is_over;
+  });
+}
+
+RayHit CasterTree::trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest, float t_max) const
+{
+  RayHit hit = RayHit::None;
+  visit(origin_ws, direction_ws, is_nearest, t_max, [&](const Meeting &meeting) {
+    hit = meeting.is_front ? RayHit::Front : RayHit::Back;
+    return true;
   });
   return hit;
+}
+
+std::optional<SurfacePoint> CasterTree::seen(const draw::View &view, const glm::vec3 &origin_ws,
+                                             const glm::vec3 &direction_ws) const
+{
+  std::optional<Meeting> nearest;
+  visit(origin_ws, direction_ws, true, std::numeric_limits<float>::max(), [&](const Meeting &meeting) {
+    const glm::vec4 place(origin_ws + meeting.t * direction_ws, 1.0F);
+    const bool is_seen =
+        (meeting.is_front || instances_[meeting.instance].is_double_sided) &&
+        !view.hidden().contains(casters_[meeting.instance].object) &&
+        std::ranges::all_of(view.clip_planes(), [&](const glm::vec4 &plane) { return glm::dot(plane, place) >= 0.0F; });
+    if (is_seen) {
+      nearest = meeting;
+    }
+    return is_seen;
+  });
+  if (!nearest) {
+    return std::nullopt;
+  }
+  const Instance &instance = instances_[nearest->instance];
+  const MeshTree::Triangle &triangle = instance.mesh->triangles[nearest->triangle];
+  const glm::vec3 normal = glm::normalize(glm::transpose(glm::mat3(instance.object_from_world)) *
+                                          glm::cross(triangle.edges[0], triangle.edges[1]));
+  return SurfacePoint{origin_ws + nearest->t * direction_ws, glm::dot(normal, direction_ws) > 0.0F ? -normal : normal};
 }
 
 }  // namespace gnomon::eevee

@@ -3,13 +3,16 @@
 
 #include "shadows/shadow_casters.hh"
 
+#include "draw_view.hh"
 #include "render_scene.hh"
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,6 +58,13 @@ class BoxTree {
 /** The side of a triangle that a ray meets. */
 enum class RayHit : std::uint8_t { None, Front, Back };
 
+/** A point of a surface. World space, metres. */
+struct SurfacePoint {
+  glm::vec3 position_ws;
+  /** Unit vector of the plane of the triangle, on the side from which the point is seen. */
+  glm::vec3 normal_ws;
+};
+
 /**
  * The triangles of a scene's casters. Those with an open shadow (render_scene::has_open_shadow) are left out, as are
  * those in buffers of a host, which the CPU does not have. The texture of a masked material blocks the part of the rays
@@ -66,9 +76,17 @@ class CasterTree {
   std::vector<scene::Bounds> update(const render_scene::RenderScene &scene);
   /**
    * Both sides of all triangles block a ray. \a direction_ws: of any length but 0. \a is_nearest: return the side of
-   * the nearest triangle; otherwise of any, which takes less time. May be called by several threads.
+   * the nearest triangle; otherwise of any, which takes less time. \a t_max: end of the ray, in directions. May be
+   * called by several threads.
    */
-  [[nodiscard]] RayHit trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest) const;
+  [[nodiscard]] RayHit trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest,
+                             float t_max = std::numeric_limits<float>::max()) const;
+  /**
+   * The nearest point of a caster that pictures of \a view show: backs of one-sided materials, hidden objects and what
+   * clip planes cut away do not count. Otherwise as trace.
+   */
+  [[nodiscard]] std::optional<SurfacePoint> seen(const draw::View &view, const glm::vec3 &origin_ws,
+                                                 const glm::vec3 &direction_ws) const;
   [[nodiscard]] bool empty() const
   {
     return instances_.empty();
@@ -81,6 +99,14 @@ class CasterTree {
     glm::mat4 object_from_world;
     /** Part of the rays that its triangles block. */
     double cover;
+    bool is_double_sided;
+  };
+  /** A triangle, and where a ray meets it. */
+  struct Meeting {
+    std::uint32_t instance;
+    std::uint32_t triangle;
+    float t;
+    bool is_front;
   };
   struct MeshKey {
     std::uint64_t mesh;
@@ -100,6 +126,13 @@ class CasterTree {
   using Covers = std::map<CoverKey, double>;
   /** The part that the texture of a masked mesh covers; 1 for other meshes. \a last: before the update. */
   double cover_of(const scene::Scene &scene, const scene::Mesh &mesh, const Covers &last);
+  /**
+   * Call \a accept with each triangle that the ray meets before \a t_max; it returns whether the ray ends there. Unless
+   * \a is_nearest, the first such triangle ends the search.
+   */
+  template <typename Accept>
+  void visit(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest, float t_max,
+             Accept &&accept) const;
 
   std::map<MeshKey, std::shared_ptr<const MeshTree>> meshes_;
   Covers covers_;

@@ -43,7 +43,7 @@ void SceneWorld::sync_occlusion(const render_scene::RenderScene &scene, const Se
   }
   else {
     auto traced = occlusion_ ? std::move(occlusion_) : std::make_unique<WorldOcclusion>();
-    is_changed |= traced->update(scene, !is_sampled);
+    is_changed |= traced->update(scene, is_sampled);
     occlusion_ = std::move(traced);
   }
   if (is_changed) {
@@ -150,11 +150,23 @@ void SceneWorld::write_block(const render_scene::RenderScene &scene)
   block.sample_count = key_.sample_count > 1 ? key_.sample_count : 0;
   const double lobe_share = world_lobe_directions / (double(std::max(directions_.count, 1)) * key_.sample_count);
   block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
-  if (occlusion_ && key_.sample_count == 1) {
-    occlusion_->write(block);
-  }
+  block.probe_count.w = 1.0F;
   is_block_written_ = true;
+  view_.reset();
   scene.device().update(block_, block);
+}
+
+void SceneWorld::follow(const draw::View &view, gpu::Device &device)
+{
+  if (!block_ || !occlusion_ || key_.sample_count != 1 || view_ == view) {
+    return;
+  }
+  shared::WorldBlock block{};
+  block.probe_count.w = 1.0F;
+  occlusion_->write(view, block);
+  constexpr std::size_t first = offsetof(shared::WorldBlock, probe_count);
+  device.update(block_, first, std::as_bytes(std::span(&block, 1)).subspan(first));
+  view_ = view;
 }
 
 void SceneWorld::make_levels(const render_scene::RenderScene &scene)

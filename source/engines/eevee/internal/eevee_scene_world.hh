@@ -38,6 +38,8 @@ class SceneWorld {
    */
   void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings,
                     const RestDirections &rest);
+  /** In pictures of one sample, write the light that arrives at the surfaces that \a view sees. \pre update_light */
+  void follow(const draw::View &view, gpu::Device &device);
   /** Create the picture of the background if it is shown and changed; free it if it is not shown. */
   void update_picture(const render_scene::RenderScene &scene, const Settings &settings);
   /** After a submission was lost: the next update_light writes the block again. */
@@ -100,6 +102,8 @@ class SceneWorld {
   WorldDirections directions_;
   /** `block_` is that of `occlusion_` and `directions_`. */
   bool is_block_written_ = false;
+  /** The view whose surfaces `block_` has the occlusion of. */
+  std::optional<draw::View> view_;
   /** Empty without Feature::World. */
   gpu::Buffer block_;
   /** Prefiltered levels for specular reflection. Empty without specular materials. */

@@ -11,33 +11,47 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace gnomon::eevee {
 
 namespace {
 
-constexpr int probe_rays = 256;
-/** The first rays of a probe, which find bodies around it. */
+/** The first rays of a probe of the scene, which find surfaces that face it. */
 constexpr int body_rays = 32;
+/** Places of probes of write() from the multiples of their distance: surfaces are often there. */
+constexpr double place_offset = 0.4142;
+/** Levels of write() from a distance of probes to twice that distance. */
+constexpr double levels_per_octave = 8.0;
+
+constexpr std::size_t probe_rays = 256;
 
 /**
- * Direction of a ray of a probe. Directions are even over the sphere, and mirrored in all axes: a plane that is
- * perpendicular to one blocks exactly a half of the light along the others. Probes have other directions, so that a
- * mean over some probes has more of them.
+ * Directions of the rays of a probe. They are even over the sphere, and mirrored in all axes: a plane that is
+ * perpendicular to one blocks exactly a half of the light along the others. Probes have different variants, so that a
+ * mean over some probes has more directions.
  */
-glm::vec3 ray_direction(std::size_t probe, int ray)
+std::array<glm::vec3, probe_rays> ray_directions(std::size_t variant)
 {
-  constexpr int octants = 8;
-  // The first rays are even over the sphere, too: 9 and 32 have no common factor.
-  const int i = 9 * (ray / octants) % (probe_rays / octants);
-  const double y = (i + 0.5) * octants / probe_rays;
-  const double across = std::sqrt(1.0 - y * y);
-  const double turn = i / std::numbers::phi + double(probe) / (std::numbers::phi * std::numbers::phi);
-  const double azimuth = 0.5 * std::numbers::pi * (turn - std::floor(turn));
-  const glm::vec3 direction(across * std::cos(azimuth), y, across * std::sin(azimuth));
-  const glm::ivec3 is_negative(ray & 1, ray >> 1 & 1, ray >> 2 & 1);
-  return direction * glm::vec3(1 - 2 * is_negative);
+  constexpr std::size_t octants = 8;
+  std::array<glm::vec3, probe_rays> directions;
+  for (std::size_t first = 0; first < probe_rays; first += octants) {
+    // The first rays are even over the sphere, too: 9 and 32 have no common factor.
+    const auto i = double(9 * (first / octants) % (probe_rays / octants));
+    const double y = (i + 0.5) * octants / probe_rays;
+    const double across = std::sqrt(1.0 - y * y);
+    const double turn = i / std::numbers::phi + double(variant) / (std::numbers::phi * std::numbers::phi);
+    const double azimuth = 0.5 * std::numbers::pi * (turn - std::floor(turn));
+    const glm::vec3 direction(across * std::cos(azimuth), y, across * std::sin(azimuth));
+    for (int octant = 0; octant < int(octants); octant++) {
+      const glm::ivec3 is_negative(octant & 1, octant >> 1 & 1, octant >> 2 & 1);
+      directions[first + std::size_t(octant)] = direction * glm::vec3(1 - 2 * is_negative);
+    }
+  }
+  return directions;
 }
 
 double luminance(const glm::dvec3 &radiance)
@@ -64,7 +78,43 @@ glm::vec3 quotient_or_one(const glm::vec3 &part, const glm::vec3 &whole)
   return glm::mix(glm::vec3(1.0F), part / glm::max(whole, glm::vec3(1e-30F)), glm::greaterThan(whole, glm::vec3(0.0F)));
 }
 
+/** As many as the variants of rays, so that most probes that are near to each other have different ones. */
+std::size_t variant_of(const std::array<int, 4> &place)
+{
+  const int sum = place[1] + 7 * place[2] + 49 * place[3];
+  return std::size_t((sum % WORLD_PROBE_MAX + WORLD_PROBE_MAX) % WORLD_PROBE_MAX);
+}
+
 }  // namespace
+
+/** Distance of the probes of a level, metres. */
+static double edge_of(int level)
+{
+  return std::exp2(level / levels_per_octave);
+}
+
+struct WorldOcclusion::Box {
+  double edge = 1.0;
+  /** Place of the first probe. */
+  glm::ivec3 first{0};
+  glm::ivec3 count{0};
+  std::vector<Probe *> probes;
+  /** Sum of the weights of points that look at a probe, and of those that see it. */
+  struct Sight {
+    double looked = 0.0;
+    double seen = 0.0;
+  };
+  std::vector<Sight> sights;
+
+  [[nodiscard]] glm::dvec3 position_ws(const glm::ivec3 &place) const
+  {
+    return (glm::dvec3(first + place) + place_offset) * edge;
+  }
+  [[nodiscard]] std::size_t index(const glm::ivec3 &place) const
+  {
+    return std::size_t((place.z * count.y + place.y) * count.x + place.x);
+  }
+};
 
 glm::ivec3 WorldOcclusion::place_of(std::size_t probe) const
 {
@@ -88,6 +138,22 @@ void WorldOcclusion::place(const scene::Bounds &bounds_ws)
   first_ws_ = 0.5F * (bounds_ws.min + bounds_ws.max - extent + step_);
 }
 
+std::uint64_t WorldOcclusion::trace(std::size_t variant, const glm::vec3 &position_ws,
+                                    std::span<const scene::Bounds> changed, std::size_t nearest_rays,
+                                    std::span<RayHit> hits) const
+{
+  std::uint64_t count = 0;
+  const auto directions = ray_directions(variant);
+  for (std::size_t ray = 0; ray < hits.size(); ray++) {
+    const glm::vec3 direction = directions[ray];
+    if (std::ranges::any_of(changed, [&](const scene::Bounds &box) { return meets(box, position_ws, direction); })) {
+      hits[ray] = casters_.trace(position_ws, direction, ray < nearest_rays);
+      count++;
+    }
+  }
+  return count;
+}
+
 void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
 {
   // A ray is tested against each of a few bounds, or against those of all.
@@ -100,16 +166,19 @@ void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
     changed = std::span(&all, 1);
   }
   std::atomic<std::uint64_t> traced = 0;
-  scene::parallel_for(std::size_t(probe_count()), 0, [&](std::size_t probe) {
-    const glm::vec3 position_ws = first_ws_ + glm::vec3(place_of(probe)) * step_;
-    std::uint64_t count = 0;
-    for (int ray = 0; ray < probe_rays; ray++) {
-      const glm::vec3 direction = ray_direction(probe, ray);
-      if (std::ranges::any_of(changed, [&](const scene::Bounds &box) { return meets(box, position_ws, direction); })) {
-        hits_[probe * probe_rays + std::size_t(ray)] = casters_.trace(position_ws, direction, ray < body_rays);
-        count++;
-      }
-    }
+  scene::parallel_for(hits_.size() / probe_rays, 0, [&](std::size_t probe) {
+    traced += trace(probe, first_ws_ + glm::vec3(place_of(probe)) * step_, changed, body_rays,
+                    std::span(hits_).subspan(probe * probe_rays, probe_rays));
+  });
+  std::vector<std::pair<const Place, Probe> *> probes;
+  for (auto &probe : probes_) {
+    probes.push_back(&probe);
+  }
+  scene::parallel_for(probes.size(), 0, [&](std::size_t i) {
+    auto &[place, probe] = *probes[i];
+    const glm::dvec3 steps = glm::dvec3(place[1], place[2], place[3]) + place_offset;
+    const std::uint64_t count = trace(variant_of(place), glm::vec3(steps * edge_of(place[0])), changed, 0, probe.hits);
+    probe.is_lit &= count == 0;
     traced += count;
   });
   rays_traced_ += traced;
@@ -118,59 +187,42 @@ void WorldOcclusion::trace(std::span<const scene::Bounds> changed)
 void WorldOcclusion::light_rays()
 {
   constexpr glm::ivec2 size = render_scene::WorldLight::size;
-  rays_.resize(hits_.size());
-  scene::parallel_for(std::size_t(probe_count()), 0, [&](std::size_t probe) {
-    for (int ray = 0; ray < probe_rays; ray++) {
-      const glm::vec3 direction = ray_direction(probe, ray);
+  rays_.resize(std::size_t(WORLD_PROBE_MAX) * probe_rays);
+  std::vector<Light> wholes(WORLD_PROBE_MAX);
+  scene::parallel_for(WORLD_PROBE_MAX, 0, [&](std::size_t variant) {
+    const auto directions = ray_directions(variant);
+    for (std::size_t ray = 0; ray < probe_rays; ray++) {
+      const glm::vec3 direction = directions[ray];
       const glm::vec2 place = shared::equirectangular(direction);
       const glm::ivec2 texel = glm::clamp(glm::ivec2(place * glm::vec2(size)), glm::ivec2(0), size - 1);
       const glm::vec2 even(place.x, 0.5F + 0.5F * direction.y);
       const glm::ivec2 cell = glm::min(glm::ivec2(even * glm::vec2(grid)), grid - 1);
-      rays_[probe * probe_rays + std::size_t(ray)] = {
-          std::uint16_t(cell.y * grid.x + cell.x),
-          float(luminance(world_->rest[std::size_t(texel.y * size.x + texel.x)]))};
+      const auto light = float(luminance(world_->rest[std::size_t(texel.y * size.x + texel.x)]));
+      rays_[variant * probe_rays + ray] = {std::uint16_t(cell.y * grid.x + cell.x), light};
+      wholes[variant].add(light, direction);
     }
   });
+  whole_ = {};
+  for (const Light &whole : wholes) {
+    whole_.positive += whole.positive;
+    whole_.negative += whole.negative;
+  }
 }
 
-void WorldOcclusion::add_up()
+void WorldOcclusion::add_up(std::size_t variant, Probe &probe) const
 {
-  probes_.assign(std::size_t(probe_count()), {});
-  struct Whole {
-    glm::vec3 positive{0.0F};
-    glm::vec3 negative{0.0F};
-  };
-  std::vector<Whole> wholes(probes_.size());
-  scene::parallel_for(probes_.size(), 0, [&](std::size_t probe) {
-    const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
-    const auto backs = std::ranges::count(hits.first(body_rays), RayHit::Back);
-    const auto fronts = std::ranges::count(hits.first(body_rays), RayHit::Front);
-    // Below a ground of one side, half of the rays meet its back.
-    const bool is_inside = 4 * backs >= body_rays && backs >= 4 * fronts;
-    probes_[probe].weight = is_inside ? 1e-2F : 1.0F;
-    glm::vec3 positive(0.0F);
-    glm::vec3 negative(0.0F);
-    Whole &whole = wholes[probe];
-    for (int ray = 0; ray < probe_rays; ray++) {
-      const glm::vec3 direction = ray_direction(probe, ray);
-      const float light = rays_[probe * probe_rays + std::size_t(ray)].luminance;
-      const float part = hits[std::size_t(ray)] == RayHit::None ? light : 0.0F;
-      const glm::vec3 along = glm::max(direction, glm::vec3(0.0F));
-      const glm::vec3 against = glm::max(-direction, glm::vec3(0.0F));
-      whole.positive += light * along;
-      whole.negative += light * against;
-      positive += part * along;
-      negative += part * against;
-    }
-    // Quotients of sums over the same rays: where nothing blocks any, they are exactly 1.
-    probes_[probe].positive = quotient_or_one(positive, whole.positive);
-    probes_[probe].negative = quotient_or_one(negative, whole.negative);
-  });
-  whole_positive_ = whole_negative_ = glm::vec3(0.0F);
-  for (const Whole &whole : wholes) {
-    whole_positive_ += whole.positive;
-    whole_negative_ += whole.negative;
+  const auto directions = ray_directions(variant);
+  Light arriving;
+  Light whole;
+  for (std::size_t ray = 0; ray < probe_rays; ray++) {
+    const float light = rays_[variant * probe_rays + ray].luminance;
+    whole.add(light, directions[ray]);
+    arriving.add(probe.hits[ray] == RayHit::None ? light : 0.0F, directions[ray]);
   }
+  // Quotients of sums over the same rays: where nothing blocks any, they are exactly 1.
+  probe.parts = {quotient_or_one(arriving.positive, whole.positive),
+                 quotient_or_one(arriving.negative, whole.negative)};
+  probe.is_lit = true;
 }
 
 WorldDirections WorldOcclusion::directions() const
@@ -185,14 +237,14 @@ WorldDirections WorldOcclusion::directions() const
     const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
     // A probe counts by the surfaces that face it: none do inside of a body, below a ground or high above it.
     const auto seen = double(std::ranges::count(hits.first(body_rays), RayHit::Front));
-    for (int ray = 0; ray < probe_rays; ray++) {
-      const Ray &lit = rays_[probe * probe_rays + std::size_t(ray)];
+    for (std::size_t ray = 0; ray < probe_rays; ray++) {
+      const Ray &lit = rays_[probe * probe_rays + ray];
       Cell &sum = cells[lit.cell];
       sum.whole += seen;
-      sum.arriving += hits[std::size_t(ray)] == RayHit::None ? seen : 0.0;
+      sum.arriving += hits[ray] == RayHit::None ? seen : 0.0;
       const double light = seen * double(lit.luminance);
       all.whole += light;
-      all.arriving += hits[std::size_t(ray)] == RayHit::None ? light : 0.0;
+      all.arriving += hits[ray] == RayHit::None ? light : 0.0;
     }
   }
   WorldDirections result{{world_, &world_->rest_directions}, WorldDirections::few};
@@ -243,53 +295,264 @@ WorldDirections WorldOcclusion::directions() const
   return result;
 }
 
-bool WorldOcclusion::update(const render_scene::RenderScene &scene, bool has_probes)
+bool WorldOcclusion::update(const render_scene::RenderScene &scene, bool is_sampled)
 {
   const std::vector<scene::Bounds> changed = casters_.update(scene);
   const scene::Bounds bounds_ws = scene.bounds();
   if (casters_.empty()) {
     const bool has_blocked = probe_count() > 0;
     count_ = glm::ivec3(0);
+    hits_.clear();
+    probes_.clear();
+    rays_.clear();
     world_ = scene.world();
     return has_blocked;
   }
   bool is_changed = !changed.empty();
-  if (probe_count() == 0 || bounds_ws.min != bounds_ws_.min || bounds_ws.max != bounds_ws_.max) {
-    place(bounds_ws);
-    hits_.assign(std::size_t(probe_count()) * probe_rays, RayHit::None);
-    trace(std::span(&bounds_ws, 1));
-    is_changed = true;
+  if (is_sampled) {
+    probes_.clear();
+    if (hits_.empty() || bounds_ws.min != bounds_ws_.min || bounds_ws.max != bounds_ws_.max) {
+      place(bounds_ws);
+      hits_.assign(std::size_t(probe_count()) * probe_rays, RayHit::None);
+      trace(std::span(&bounds_ws, 1));
+      is_changed = true;
+    }
+    else if (is_changed) {
+      trace(changed);
+    }
   }
-  else if (is_changed) {
-    trace(changed);
+  else {
+    hits_.clear();
+    if (is_changed) {
+      trace(changed);
+    }
+    is_changed |= bounds_ws.min != bounds_ws_.min || bounds_ws.max != bounds_ws_.max;
+    bounds_ws_ = bounds_ws;
   }
-  if (world_ != scene.world() || rays_.size() != hits_.size()) {
+  if (world_ != scene.world() || rays_.empty()) {
     world_ = scene.world();
     light_rays();
+    for (auto &[place, probe] : probes_) {
+      probe.is_lit = false;
+    }
     is_changed = true;
-  }
-  if (is_changed) {
-    probes_.clear();
-  }
-  if (has_probes && probes_.empty()) {
-    add_up();
   }
   return is_changed;
 }
 
-void WorldOcclusion::write(shared::WorldBlock &block) const
+std::vector<SurfacePoint> WorldOcclusion::seen_points(const draw::View &view) const
 {
-  if (probe_count() == 0) {
+  constexpr int rows = 32;
+  constexpr int count = 512;
+  const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(view.view_from_world()));
+  const glm::dmat4 view_from_clip = glm::inverse(glm::dmat4(view.clip_from_view()));
+  std::vector<std::optional<SurfacePoint>> found(count);
+  scene::parallel_for(rows, 0, [&](std::size_t row) {
+    for (std::size_t i = row; i < found.size(); i += rows) {
+      const double turn = double(i) / std::numbers::phi;
+      const glm::dvec2 place(2.0 * (double(i) + 0.5) / count - 1.0, 2.0 * (turn - std::floor(turn)) - 1.0);
+      const glm::dvec4 near = view_from_clip * glm::dvec4(place, 1.0, 1.0);
+      const glm::dvec4 far = view_from_clip * glm::dvec4(place, 0.5, 1.0);
+      const glm::dvec3 start = glm::dvec3(near) / near.w;
+      const glm::dvec3 along = glm::dmat3(world_from_view) * (glm::dvec3(far) / far.w - start);
+      const glm::vec3 origin_ws(world_from_view * glm::dvec4(start, 1.0));
+      const glm::vec3 direction_ws(glm::normalize(along));
+      found[i] = casters_.seen(view, origin_ws, direction_ws);
+    }
+  });
+  std::vector<SurfacePoint> points;
+  for (const std::optional<SurfacePoint> &point : found) {
+    if (point && glm::all(glm::lessThan(glm::abs(point->position_ws), glm::vec3(1e18F))) &&
+        glm::dot(point->normal_ws, point->normal_ws) > 0.5F) {
+      points.push_back(*point);
+    }
+  }
+  return points;
+}
+
+WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> points)
+{
+  glm::dvec3 low(bounds_ws_.min);
+  glm::dvec3 high(bounds_ws_.max);
+  for (int axis = 0; axis < 3 && !points.empty(); axis++) {
+    std::vector<float> places;
+    for (const SurfacePoint &point : points) {
+      places.push_back(point.position_ws[axis]);
+    }
+    std::ranges::sort(places);
+    // A few points, such as those seen through a window, do not make the probes of all others sparse.
+    const std::size_t left_out = places.size() / 32;
+    low[axis] = double(places[left_out]);
+    high[axis] = double(places[places.size() - 1 - left_out]);
+  }
+  const auto largest = [](const glm::dvec3 &v) { return std::max({v.x, v.y, v.z}); };
+  const double magnitude = largest(glm::max(glm::abs(low), glm::abs(high)));
+  const double edge_min = std::max({largest(high - low) / WORLD_PROBE_MAX, 1e-6 * magnitude, 1e-18});
+  Box box;
+  int level = int(std::ceil(levels_per_octave * std::log2(edge_min)));
+  for (;; level++) {
+    box.edge = edge_of(level);
+    constexpr double margin = 0.25;
+    box.first = glm::ivec3(glm::ceil(low / box.edge - place_offset - margin));
+    glm::ivec3 last(glm::floor(high / box.edge - place_offset + margin));
+    for (int axis = 0; axis < 3; axis++) {
+      // A plane has probes at both of its sides.
+      if (last[axis] <= box.first[axis]) {
+        box.first[axis] = int(std::floor(0.5 * (low[axis] + high[axis]) / box.edge - place_offset));
+        last[axis] = box.first[axis] + 1;
+      }
+    }
+    box.count = last - box.first + 1;
+    if (box.count.x * box.count.y * box.count.z <= WORLD_PROBE_MAX) {
+      break;
+    }
+  }
+  std::map<Place, Probe> probes;
+  std::vector<Place> places;
+  for (int z = 0; z < box.count.z; z++) {
+    for (int y = 0; y < box.count.y; y++) {
+      for (int x = 0; x < box.count.x; x++) {
+        const glm::ivec3 place = box.first + glm::ivec3(x, y, z);
+        places.push_back({level, place.x, place.y, place.z});
+        auto found = probes_.extract(places.back());
+        box.probes.push_back(found ? &probes.insert(std::move(found)).position->second : &probes[places.back()]);
+      }
+    }
+  }
+  // Those of other views, which other viewports have, or to which a camera may return.
+  constexpr std::size_t kept_max = std::size_t(16) * WORLD_PROBE_MAX;
+  if (probes_.size() <= kept_max) {
+    probes.merge(probes_);
+  }
+  probes_ = std::move(probes);
+  const scene::Bounds all{glm::vec3(-std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::max())};
+  std::atomic<std::uint64_t> traced = 0;
+  scene::parallel_for(places.size(), 0, [&](std::size_t i) {
+    Probe &probe = *box.probes[i];
+    const glm::dvec3 steps = glm::dvec3(places[i][1], places[i][2], places[i][3]) + place_offset;
+    if (!probe.is_traced) {
+      traced += trace(variant_of(places[i]), glm::vec3(steps * box.edge), std::span(&all, 1), 0, probe.hits);
+      probe.is_traced = true;
+    }
+    if (!probe.is_lit) {
+      add_up(variant_of(places[i]), probe);
+    }
+  });
+  rays_traced_ += traced;
+  box.sights.assign(places.size(), {});
+  return box;
+}
+
+void WorldOcclusion::look(std::span<const SurfacePoint> points, Box &box) const
+{
+  struct Look {
+    std::size_t probe = 0;
+    float weight = 0.0F;
+    bool is_seen = false;
+  };
+  constexpr std::size_t corners = 8;
+  std::vector<Look> looks(points.size() * corners);
+  constexpr std::size_t part = 32;
+  scene::parallel_for((points.size() + part - 1) / part, 0, [&](std::size_t first) {
+    for (std::size_t i = first * part; i < std::min((first + 1) * part, points.size()); i++) {
+      const glm::vec3 normal = points[i].normal_ws;
+      const glm::dvec3 position(points[i].position_ws);
+      const glm::vec3 last(box.count - 1);
+      // As in world_parts.
+      const glm::vec3 place(position / box.edge - place_offset - glm::dvec3(box.first));
+      // Points that are left out of the box have no probes of their own.
+      if (glm::any(glm::lessThan(place, glm::vec3(-1.0F))) || glm::any(glm::greaterThan(place, last + 1.0F))) {
+        continue;
+      }
+      const glm::vec3 above = glm::clamp(place + 0.2F * normal, glm::vec3(0.0F), last);
+      const glm::vec3 low = glm::clamp(glm::floor(above), glm::vec3(0.0F), last - 1.0F);
+      const glm::vec3 share = above - low;
+      // Above the rounding of the point.
+      const float offset =
+          float(0.01 * box.edge + 1e-6 * std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}));
+      const glm::vec3 start = points[i].position_ws + offset * normal;
+      for (std::size_t corner = 0; corner < corners; corner++) {
+        const glm::ivec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::vec3 near = glm::mix(1.0F - share, share, glm::vec3(side));
+        const float height = glm::dot(normal, low + glm::vec3(side) - place);
+        const float weight = near.x * near.y * near.z * std::clamp(8.0F * height, 0.0F, 1.0F);
+        if (weight > 0.0F) {
+          const glm::ivec3 at = glm::ivec3(low) + side;
+          const glm::vec3 along = glm::vec3(box.position_ws(at)) - start;
+          looks[i * corners + corner] = {box.index(at), weight,
+                                         casters_.trace(start, along, false, 1.0F) == RayHit::None};
+        }
+      }
+    }
+  });
+  for (const Look &look : looks) {
+    box.sights[look.probe].looked += double(look.weight);
+    box.sights[look.probe].seen += look.is_seen ? double(look.weight) : 0.0;
+  }
+}
+
+void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
+{
+  if (casters_.empty()) {
     return;
   }
-  block.probe_count = glm::vec4(count_, 0.0F);
-  block.probe_scale = glm::vec4(1.0F / step_, 0.0F);
-  block.probe_offset = glm::vec4(-first_ws_ / step_, 0.0F);
-  block.whole_positive = glm::vec4(whole_positive_, 0.0F);
-  block.whole_negative = glm::vec4(whole_negative_, 0.0F);
-  for (std::size_t i = 0; i < std::size_t(probe_count()); i++) {
-    block.probes[2 * i] = glm::vec4(glm::sqrt(probes_[i].positive), probes_[i].weight);
-    block.probes[2 * i + 1] = glm::vec4(glm::sqrt(probes_[i].negative), 0.0F);
+  const std::vector<SurfacePoint> points = seen_points(view);
+  Box box = box_around(points);
+  look(points, box);
+  count_ = box.count;
+  struct Weighted {
+    Light parts;
+    float weight = 0.0F;
+  };
+  constexpr float unseen_weight = 1e-2F;
+  constexpr double seen_least = 0.05;
+  std::vector<Weighted> probes(box.probes.size());
+  float most = 0.0F;
+  for (std::size_t i = 0; i < probes.size(); i++) {
+    const Box::Sight &sight = box.sights[i];
+    const float seen = points.empty()                           ? 1.0F
+                       : sight.seen > seen_least * sight.looked ? float(sight.seen / sight.looked)
+                                                                : 0.0F;
+    if (seen > 0.0F) {
+      const Light &parts = box.probes[i]->parts;
+      probes[i] = {parts, seen};
+      const glm::vec3 larger = glm::max(parts.positive, parts.negative);
+      most = std::max({most, larger.x, larger.y, larger.z});
+    }
+  }
+  const bool has_seen = std::ranges::any_of(probes, [](const Weighted &probe) { return probe.weight > 0.0F; });
+  // The others, such as those behind a wall or within a body, have the mean of their neighbours.
+  for (bool is_changed = has_seen; is_changed;) {
+    is_changed = false;
+    const std::vector<Weighted> before = probes;
+    for (std::size_t i = 0; i < probes.size(); i++) {
+      Light sum;
+      float count = 0.0F;
+      for (int side = 0; side < 6 && before[i].weight == 0.0F; side++) {
+        glm::ivec3 at = place_of(i);
+        at[side / 2] += side % 2 == 0 ? 1 : -1;
+        const bool is_in = at[side / 2] >= 0 && at[side / 2] < count_[side / 2];
+        if (is_in && before[box.index(at)].weight > 0.0F) {
+          sum.positive += before[box.index(at)].parts.positive;
+          sum.negative += before[box.index(at)].parts.negative;
+          count += 1.0F;
+        }
+      }
+      if (count > 0.0F) {
+        probes[i] = {{sum.positive / count, sum.negative / count}, unseen_weight};
+        is_changed = true;
+      }
+    }
+  }
+  // A convex body alone has all light where no probe is above its plane, and blocks some from each probe.
+  block.probe_count = glm::vec4(count_, has_seen ? std::sqrt(std::min(1.25F * most, 1.0F)) : 1.0F);
+  block.probe_scale = glm::vec4(glm::vec3(float(1.0 / box.edge)), 0.0F);
+  block.probe_offset = glm::vec4(glm::vec3(-glm::dvec3(box.first) - place_offset), 0.0F);
+  block.whole_positive = glm::vec4(whole_.positive, 0.0F);
+  block.whole_negative = glm::vec4(whole_.negative, 0.0F);
+  for (std::size_t i = 0; i < probes.size(); i++) {
+    block.probes[2 * i] = glm::vec4(glm::sqrt(probes[i].parts.positive), probes[i].weight);
+    block.probes[2 * i + 1] = glm::vec4(glm::sqrt(probes[i].parts.negative), 0.0F);
   }
 }
 

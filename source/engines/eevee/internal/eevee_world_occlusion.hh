@@ -7,9 +7,12 @@
 #include "eevee_world_shared.h"
 #include "render_world.hh"
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,25 +20,28 @@
 namespace gnomon::eevee {
 
 /**
- * The parts of a world's light that arrive at points of a grid over the scene (probes): for pictures of one sample, and
- * to choose the directions of others. They are traced on the CPU: shadow maps for enough directions would cost more.
- * Internal to the engine.
+ * The parts of a world's light that arrive at points (probes): around the surfaces of a view for pictures of one
+ * sample, and over the scene to choose the directions of others. They are traced on the CPU: shadow maps for enough
+ * directions would cost more. Internal to the engine.
  */
 class WorldOcclusion {
  public:
   /**
-   * Trace the rays that changed casters can have changed. \a has_probes: also add up the world's light over those that
-   * meet nothing, for write(). \return whether directions() and the probes may be others \pre the scene has a world
+   * Trace the rays that changed casters can have changed. \a is_sampled: for directions(); otherwise for write().
+   * \return whether their results may be others \pre the scene has a world
    */
-  bool update(const render_scene::RenderScene &scene, bool has_probes = true);
-  /** Write the probes to the members of \a block that have them. \pre the last update() had probes */
-  void write(shared::WorldBlock &block) const;
+  bool update(const render_scene::RenderScene &scene, bool is_sampled);
+  /**
+   * Write the probes around the surfaces that \a view sees to the members of \a block that have them; around all
+   * casters if it sees none. Traces probes that are new. \pre the last update() was not for directions()
+   */
+  void write(const draw::View &view, shared::WorldBlock &block);
   /**
    * Directions of the rest of the last update()'s world. Those from which more light arrives at the probes are more
-   * frequent. \pre the rest is not black
+   * frequent. \pre the rest is not black. The last update() was for directions
    */
   [[nodiscard]] WorldDirections directions() const;
-  /** Number of probes; 0 if nothing blocks the light. */
+  /** Number of probes of the scene, or of the last write(); 0 if nothing blocks the light. */
   [[nodiscard]] int probe_count() const
   {
     return count_.x * count_.y * count_.z;
@@ -47,18 +53,44 @@ class WorldOcclusion {
   }
 
  private:
-  /** The parts of the irradiance on surfaces that face the positive and the negative axes. */
-  struct Probe {
-    glm::vec3 positive{1.0F};
-    glm::vec3 negative{1.0F};
-    /** Less inside of a body, so that it counts only where no other probe does. */
-    float weight = 1.0F;
+  /** Irradiance on surfaces that face the positive and the negative axes, or parts of it. */
+  struct Light {
+    glm::vec3 positive{0.0F};
+    glm::vec3 negative{0.0F};
+
+    void add(float light, const glm::vec3 &direction)
+    {
+      positive += light * glm::max(direction, glm::vec3(0.0F));
+      negative += light * glm::max(-direction, glm::vec3(0.0F));
+    }
   };
+  /**
+   * Where a probe of write() is: its level, and its place among all points of the level. They do not depend on the
+   * view, so that a view that moves keeps most of its probes.
+   */
+  using Place = std::array<int, 4>;
+  struct Probe {
+    std::array<RayHit, 256> hits{};
+    /** The parts of the world's light that arrive. */
+    Light parts;
+    /** `hits` and `parts` are up to date. */
+    bool is_traced = false;
+    bool is_lit = false;
+  };
+  /** The probes of a box, by index, and what its surfaces see of them. */
+  struct Box;
   void place(const scene::Bounds &bounds_ws);
   void trace(std::span<const scene::Bounds> changed);
+  /** Trace the rays of a probe that meet \a changed. \return their number */
+  std::uint64_t trace(std::size_t variant, const glm::vec3 &position_ws, std::span<const scene::Bounds> changed,
+                      std::size_t nearest_rays, std::span<RayHit> hits) const;
   /** Set `rays_`. */
   void light_rays();
-  void add_up();
+  void add_up(std::size_t variant, Probe &probe) const;
+  [[nodiscard]] std::vector<SurfacePoint> seen_points(const draw::View &view) const;
+  /** The probes around \a points. */
+  Box box_around(std::span<const SurfacePoint> points);
+  void look(std::span<const SurfacePoint> points, Box &box) const;
   [[nodiscard]] glm::ivec3 place_of(std::size_t probe) const;
 
   CasterTree casters_;
@@ -75,13 +107,14 @@ class WorldOcclusion {
   };
   /** The world of `rays_`. */
   std::shared_ptr<const render_scene::WorldLight> world_;
-  /** By probe and ray, as `hits_`. */
+  /** By variant of the directions and ray. */
   std::vector<Ray> rays_;
+  /** By probe of the scene and ray. The variant of a probe is its index. Empty in pictures of one sample. */
   std::vector<RayHit> hits_;
-  /** Empty: to be added up. */
-  std::vector<Probe> probes_;
-  glm::vec3 whole_positive_{0.0F};
-  glm::vec3 whole_negative_{0.0F};
+  /** The last probes of write(). Empty in pictures of several samples. */
+  std::map<Place, Probe> probes_;
+  /** Of the whole world, in any unit. */
+  Light whole_;
   std::uint64_t rays_traced_ = 0;
 };
 
