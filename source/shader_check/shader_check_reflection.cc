@@ -246,7 +246,7 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
                          bounded_lines(stage.name_files(compilation.glslang.log())));
       }
     }
-    if (!compilation.glslang.link()) {
+    if (!compilation.link()) {
       throw gpu::Error("shader '{}' does not link:\n{}", name, bounded_lines(compilation.glslang.log()));
     }
     compilation.read_facts(true, false);
@@ -475,7 +475,7 @@ ProgramInterface program_interface(const Program &program, const gpu::ShaderFile
     }
     // The stages of a program for Vulkan may differ in what glslang compares by name, and check_program() has compared
     // them.
-    if (!compilation.glslang.link() && !is_vulkan(target)) {
+    if (!compilation.link() && !is_vulkan(target)) {
       throw gpu::Error("'{}' does not link for {}:\n{}", program.name, to_string(target),
                        bounded_lines(compilation.glslang.log()));
     }
