@@ -199,6 +199,20 @@ TEST(CheckProgram, StagesThatADriverDoesNotLinkAreErrors)
           << before << after;
     }
   }
+  for (const bool is_es3 : {true, false}) {
+    for (const bool is_used : {true, false}) {
+      const std::string version = is_es3 ? "#version 300 es\n" : "";
+      EXPECT_EQ(
+          is_linked(
+              version + "uniform highp vec4 tint;\nvoid main() { gl_Position = " + (is_used ? "tint" : "vec4(1.0)") +
+                  "; }\n",
+              version + "precision mediump float;\nuniform vec4 tint;\n" +
+                  (is_es3 ? "out vec4 c;\nvoid main() { c = tint; }\n" : "void main() { gl_FragColor = tint; }\n"),
+              CheckTarget::Es),
+          !is_es3 && !is_used)
+          << version << is_used;
+    }
+  }
   EXPECT_FALSE(is_linked("#version 300 es\nvoid main() { gl_Position = vec4(1.0); }\n",
                          "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", CheckTarget::OpenGl));
 }

@@ -329,6 +329,9 @@ void Checker::link_stages()
     is_linked = errors.empty();
   }
   c_.read_facts(is_linked || is_difference_between_stages(errors), true);
+  if (std::erase_if(errors, [&](const LinkMessage &error) { return is_about_unused_uniform(error); }) > 0) {
+    is_linked = errors.empty();
+  }
   check_findings();
   check_versions();
   if (is_vulkan(options_.target) && !settings_.is_own) {
@@ -504,6 +507,22 @@ void Checker::check_slots()
   }
 }
 
+bool Checker::is_about_unused_uniform(const LinkMessage &error) const
+{
+  if (options_.target != CheckTarget::Es || !left_out_rules(options_.target).empty() ||
+      error.text.find("Precision qualifiers must match: ") == std::string::npos ||
+      std::ranges::any_of(c_.sources, [](const std::unique_ptr<StageSource> &source) {
+        return version_in(source->text()).value_or(Version{100, {}}).number >= 300;
+      })) {
+    return false;
+  }
+  return std::ranges::count_if(c_.facts, [&](const StageFacts &facts) {
+           return std::ranges::any_of(facts.uniforms, [&](const Declaration &uniform) {
+             return uniform.is_used && find_word(error.text, uniform.name) != std::string_view::npos;
+           });
+         }) < 2;
+}
+
 void Checker::check_uniform_locations()
 {
   if (has_spirv(options_.target)) {
@@ -512,6 +531,9 @@ void Checker::check_uniform_locations()
   std::vector<StageDeclaration> known;
   for (std::size_t i = 0; i < c_.facts.size(); i++) {
     for (const Declaration &uniform : c_.facts[i].uniforms) {
+      if (uniform.location < 0) {
+        continue;
+      }
       const auto other = std::ranges::find_if(known, [&](const StageDeclaration &one) {
         const Declaration &earlier = *one.declaration;
         return earlier.name != uniform.name && earlier.location < uniform.location + uniform.location_count &&

@@ -67,6 +67,8 @@ class Checker {
   void check_kinds();
   void check_findings();
   void check_slots();
+  /** Whether \a error is about the precision of a uniform that GLSL ES 1.00 compares only if two stages use it. */
+  [[nodiscard]] bool is_about_unused_uniform(const LinkMessage &error) const;
   /** Uniforms of OpenGL that share a location, about which glslang is silent. */
   void check_uniform_locations();
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */

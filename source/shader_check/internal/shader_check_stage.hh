@@ -96,7 +96,7 @@ struct StageFacts {
   std::vector<Declaration> uniform_blocks;
   std::vector<Declaration> storage_blocks;
   std::vector<Declaration> textures;
-  /** Outside of blocks. From the syntax tree those with a location; from SPIR-V all, of structs each member. */
+  /** Outside of blocks. From SPIR-V, of structs each member. */
   std::vector<Declaration> uniforms;
   std::vector<Declaration> inputs;
   std::vector<Declaration> outputs;

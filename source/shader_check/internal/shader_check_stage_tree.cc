@@ -272,8 +272,8 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
       (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
     }
     else {
+      facts.uniforms.push_back(declaration);
       if (qualifier.hasLocation()) {
-        facts.uniforms.push_back(declaration);
         facts.uniforms.back().location = int(qualifier.layoutLocation);
         facts.uniforms.back().location_count = TIntermediate::computeTypeUniformLocationSize(type);
       }
