@@ -225,11 +225,8 @@ shader_check::Program program_in(ManifestValue &value, const fs::path &folder)
   const ManifestValue files = value.at("files");
   for (ManifestValue &value : files.list()) {
     shader_check::Program::File file = file_in(value, folder);
-    if (std::ranges::find(program.files, file.stage, &shader_check::Program::File::stage) != program.files.end()) {
-      value.fail(
-          fmt::format("the program has two files of the {} stage. It may have one of each: shaders of one stage "
-                      "that OpenGL links are checked one by one, each as a program of its own",
-                      to_string(file.stage)));
+    if (std::ranges::find(program.files, file.path, &shader_check::Program::File::path) != program.files.end()) {
+      value.fail("the program has this file twice");
     }
     program.files.push_back(std::move(file));
   }

@@ -68,62 +68,128 @@ std::vector<std::string_view> names_of(const std::vector<shader_check::Stage> &s
   return names;
 }
 
-nlohmann::json to_json(const std::vector<shader_check::StageVariable> &variables)
+nlohmann::json to_json(const std::vector<shader_check::StageVariable> &variables, bool has_components)
 {
   nlohmann::json list = nlohmann::json::array();
   for (const shader_check::StageVariable &variable : variables) {
     list.push_back({{"name", variable.name}, {"type", variable.type}, {"location", variable.location}});
+    if (has_components) {
+      list.back()["component"] = variable.component;
+      list.back()["index"] = variable.index;
+    }
   }
   return list;
+}
+
+nlohmann::json to_json(const shader_check::ProgramBinding::Member &member)
+{
+  nlohmann::json arrays = nlohmann::json::array();
+  for (const shader_check::ProgramBinding::Array &array : member.arrays) {
+    arrays.push_back({{"count", array.count}, {"stride", array.stride_bytes}});
+  }
+  nlohmann::json result = {{"name", member.name},
+                           {"type", member.type},
+                           {"offset", member.offset_bytes},
+                           {"size", member.size_bytes},
+                           {"arrays", std::move(arrays)}};
+  if (member.matrix_stride_bytes > 0) {
+    result["matrix_stride"] = member.matrix_stride_bytes;
+    result["row_major"] = member.is_row_major;
+  }
+  return result;
+}
+
+nlohmann::json to_json(const shader_check::ProgramBinding &binding)
+{
+  using Kind = shader_check::ProgramBinding::Kind;
+  nlohmann::json members = nlohmann::json::array();
+  for (const shader_check::ProgramBinding::Member &member : binding.members) {
+    members.push_back(to_json(member));
+  }
+  nlohmann::json result = {{"kind", to_string(binding.kind)},
+                           {"name", binding.name},
+                           {"type", binding.type},
+                           {"counts", binding.counts},
+                           {"set", binding.set},
+                           {"slot", binding.slot},
+                           {"size", binding.size_bytes},
+                           {"stages", names_of(binding.stages)},
+                           {"members", std::move(members)}};
+  if (binding.kind == Kind::Image) {
+    result["format"] = binding.format;
+  }
+  if (binding.kind == Kind::Image || binding.kind == Kind::StorageBlock) {
+    result["qualifiers"] = binding.qualifiers;
+  }
+  if (binding.kind == Kind::SubpassInput) {
+    result["input_attachment_index"] = binding.attachment;
+  }
+  if (binding.kind == Kind::AtomicCounter) {
+    result["offset"] = binding.offset_bytes;
+  }
+  return result;
 }
 
 nlohmann::json to_json(const NamedInterface &program)
 {
   nlohmann::json bindings = nlohmann::json::array();
   for (const shader_check::ProgramBinding &binding : program.interface.bindings) {
-    nlohmann::json members = nlohmann::json::array();
-    for (const shader_check::ProgramBinding::Member &member : binding.members) {
-      nlohmann::json arrays = nlohmann::json::array();
-      for (const shader_check::ProgramBinding::Array &array : member.arrays) {
-        arrays.push_back({{"count", array.count}, {"stride", array.stride_bytes}});
-      }
-      members.push_back({{"name", member.name},
-                         {"type", member.type},
-                         {"offset", member.offset_bytes},
-                         {"size", member.size_bytes},
-                         {"arrays", std::move(arrays)}});
-    }
-    bindings.push_back({{"kind", to_string(binding.kind)},
-                        {"name", binding.name},
-                        {"type", binding.type},
-                        {"set", binding.set},
-                        {"slot", binding.slot},
-                        {"size", binding.size_bytes},
-                        {"stages", names_of(binding.stages)},
-                        {"members", std::move(members)}});
+    bindings.push_back(to_json(binding));
+  }
+  nlohmann::json constants = nlohmann::json::array();
+  for (const shader_check::ProgramConstant &constant : program.interface.constants) {
+    constants.push_back({{"id", constant.id}, {"name", constant.name}, {"type", constant.type}});
+    std::visit([&](auto value) { constants.back()["value"] = value; }, constant.value);
+  }
+  nlohmann::json workgroups = nlohmann::json::array();
+  for (const shader_check::Workgroup &workgroup : program.interface.workgroups) {
+    workgroups.push_back(
+        {{"stage", to_string(workgroup.stage)}, {"size", workgroup.size}, {"constant_ids", workgroup.constant_ids}});
   }
   return {{"program", program.name},
           {"defines", program.defines},
           {"target", to_string(program.interface.target)},
           {"stages", names_of(program.interface.stages)},
           {"bindings", std::move(bindings)},
-          {"uniforms", to_json(program.interface.uniforms)},
-          {"inputs", to_json(program.interface.inputs)},
-          {"outputs", to_json(program.interface.outputs)}};
+          {"uniforms", to_json(program.interface.uniforms, false)},
+          {"inputs", to_json(program.interface.inputs, true)},
+          {"outputs", to_json(program.interface.outputs, true)},
+          {"constants", std::move(constants)},
+          {"workgroups", std::move(workgroups)}};
 }
 
 void print_variables(std::string_view kind, const std::vector<shader_check::StageVariable> &variables)
 {
   for (const shader_check::StageVariable &variable : variables) {
-    fmt::print("{} {} '{}', location {}\n", kind, variable.type, variable.name, variable.location);
+    fmt::print("{} {} '{}', location {}{}{}\n", kind, variable.type, variable.name, variable.location,
+               variable.component == 0 ? "" : fmt::format(", component {}", variable.component),
+               variable.index == 0 ? "" : fmt::format(", index {}", variable.index));
   }
 }
 
 void print_binding(const shader_check::ProgramBinding &binding)
 {
-  fmt::print("{} {}'{}'{}, in {}", to_string(binding.kind), binding.type.empty() ? "" : binding.type + " ",
-             binding.name, binding.slot < 0 ? "" : fmt::format(", set {}, slot {}", binding.set, binding.slot),
-             fmt::join(names_of(binding.stages), ", "));
+  const bool is_block = binding.type.empty();
+  fmt::print("{} {}'{}'", to_string(binding.kind), is_block ? "" : binding.type + " ", binding.name);
+  for (const int count : is_block ? binding.counts : std::vector<int>()) {
+    fmt::print("[{}]", count == 0 ? "" : std::to_string(count));
+  }
+  if (binding.slot >= 0) {
+    fmt::print(", set {}, slot {}", binding.set, binding.slot);
+  }
+  if (binding.kind == shader_check::ProgramBinding::Kind::AtomicCounter) {
+    fmt::print(", offset {}", binding.offset_bytes);
+  }
+  if (binding.attachment >= 0) {
+    fmt::print(", attachment {}", binding.attachment);
+  }
+  if (!binding.format.empty()) {
+    fmt::print(", {}", binding.format);
+  }
+  for (const std::string_view qualifier : binding.qualifiers) {
+    fmt::print(", {}", qualifier);
+  }
+  fmt::print(", in {}", fmt::join(names_of(binding.stages), ", "));
   fmt::print("{}\n",
              binding.members.empty() ? "" : fmt::format("; {} bytes; offset, size, member:", binding.size_bytes));
   for (const shader_check::ProgramBinding::Member &member : binding.members) {
@@ -131,7 +197,7 @@ void print_binding(const shader_check::ProgramBinding &binding)
     for (const shader_check::ProgramBinding::Array &array : member.arrays) {
       fmt::print("{}{}", &array == member.arrays.data() ? ", stride " : ", ", array.stride_bytes);
     }
-    fmt::print("\n");
+    fmt::print("{}\n", member.is_row_major ? ", row_major" : "");
   }
 }
 
@@ -146,6 +212,18 @@ void print_text(const NamedInterface &program)
   print_variables("output", program.interface.outputs);
   print_variables("uniform", program.interface.uniforms);
   std::ranges::for_each(program.interface.bindings, print_binding);
+  for (const shader_check::ProgramConstant &constant : program.interface.constants) {
+    fmt::print("constant {} '{}', id {}, {}\n", constant.type, constant.name, constant.id,
+               std::visit([](auto value) { return fmt::format("{}", value); }, constant.value));
+  }
+  for (const shader_check::Workgroup &workgroup : program.interface.workgroups) {
+    fmt::print("workgroup of the {} stage:", to_string(workgroup.stage));
+    for (std::size_t i = 0; i < workgroup.size.size(); i++) {
+      const int id = workgroup.constant_ids[i];
+      fmt::print(" {}{}", workgroup.size[i], id < 0 ? "" : fmt::format(" (constant {})", id));
+    }
+    fmt::print("\n");
+  }
 }
 
 /** Programs of engines have no endings and are no files. */

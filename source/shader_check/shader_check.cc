@@ -143,13 +143,13 @@ std::vector<CheckMessage> check_shader(const gpu::ShaderDesc &desc, const gpu::S
       }
     }
     catch (const gpu::SourceError &error) {
-      checker.refuse(error.file, error.line, error.text);
+      checker.refuse("include", error.file, error.line, error.text);
     }
     catch (const gpu::Error &error) {
       const std::string &file = !desc.vertex_path.empty()     ? desc.vertex_path
                                 : !desc.geometry_path.empty() ? desc.geometry_path
                                                               : desc.fragment_path;
-      checker.refuse(file, 1, error.what());
+      checker.refuse("include", file, 1, error.what());
     }
     checker.finish();
     messages = checker.messages();
@@ -190,8 +190,14 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
     CheckSettings settings{{}, false, options.features};
     settings.options.levels = options.levels;
     settings.options.is_strict = options.is_strict;
+    const auto second = std::ranges::adjacent_find(sorted, {}, &Program::File::stage);
     if (options.target) {
       result.target = *options.target;
+    }
+    else if (second != sorted.end()) {
+      result.target = CheckTarget::OpenGl;
+      result.target_reason =
+          fmt::format("{} and {} are of one stage, which OpenGL alone links", second->path, std::next(second)->path);
     }
     else if (std::ranges::any_of(sorted, [&](const Program::File &file) {
                return files(file.path).value_or("").find('\0') != std::string_view::npos;
@@ -212,12 +218,18 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
     settings.options.target = result.target;
     Checker checker(program.name, program.defines, settings);
     for (const Program::File &file : sorted) {
+      if (second != sorted.end() && &file == &*std::next(second) && result.target != CheckTarget::OpenGl) {
+        checker.refuse("link", file.path, 1,
+                       fmt::format("{} has the {} stage as well. Only OpenGL links several shaders of one stage, and "
+                                   "the target is {}",
+                                   second->path, to_string(file.stage), to_string(result.target)));
+      }
       if (const std::optional<std::string_view> text = files(file.path)) {
         checker.compile(std::make_unique<StageSource>(file.stage, file.path, *text, program.defines, files,
                                                       options.include_folders));
       }
       else {
-        checker.refuse(file.path, 1, "there is no such file, or it cannot be read");
+        checker.refuse("include", file.path, 1, "there is no such file, or it cannot be read");
         missed.insert(file.path);
       }
     }

@@ -150,7 +150,7 @@ struct Program {
     std::string path;
   };
   std::string name;
-  /** At most one of each stage, in any order. */
+  /** In any order. Of one stage there may be several for CheckTarget::OpenGl alone. */
   std::vector<File> files;
   /** "NAME" or "NAME value", defined in every stage. */
   std::vector<std::string> defines;

@@ -4,6 +4,9 @@
 
 #include "shader_check.hh"
 
+#include <array>
+#include <variant>
+
 namespace gnomon::shader_check {
 
 struct StageVariable {
@@ -12,15 +15,30 @@ struct StageVariable {
   std::string type;
   /** -1 if there is none. */
   int location = -1;
+  /** Inputs and outputs: the first component within the location, and the input of blending. */
+  int component = 0;
+  int index = 0;
 };
 
-/** A block, texture or image of a program. */
+/** A block, texture, image or other resource of a program. */
 struct ProgramBinding {
-  enum class Kind : std::uint8_t { UniformBlock, StorageBlock, Texture, Image, PushConstants };
+  enum class Kind : std::uint8_t {
+    UniformBlock,
+    StorageBlock,
+    /** With its sampler or without. */
+    Texture,
+    Image,
+    PushConstants,
+    Sampler,
+    SubpassInput,
+    AccelerationStructure,
+    AtomicCounter,
+  };
   struct Array {
     /** 0: an array without a size. */
     std::uint32_t count = 0;
     std::uint32_t stride_bytes = 0;
+    bool operator==(const Array &) const = default;
   };
   struct Member {
     /** Path in the block, such as `lights[0].color`. An array of structs is listed by its first element. */
@@ -31,15 +49,30 @@ struct ProgramBinding {
     std::uint32_t size_bytes = 0;
     /** The arrays of the path and of the type, the outermost first. */
     std::vector<Array> arrays;
+    /** Of a matrix, from one column, or row if it is row-major, to the next; 0: no matrix. */
+    std::uint32_t matrix_stride_bytes = 0;
+    bool is_row_major = false;
+    bool operator==(const Member &) const = default;
   };
   Kind kind = Kind::UniformBlock;
   /** For blocks, the name of the block, not of an instance. */
   std::string name;
-  /** Type of a texture or an image; empty for blocks. */
+  /** GLSL's name of the type, with its arrays; empty for blocks. */
   std::string type;
+  /** The sizes of arrays of the resource, outermost first; 0: an array without a size. */
+  std::vector<int> counts;
   int set = 0;
   /** -1 if the shader gives none. */
   int slot = -1;
+  /** Images: GLSL's name of the format; empty if there is none. */
+  std::string_view format;
+  /** Storage blocks and images: of readonly, writeonly, restrict, coherent and volatile those that hold for the whole.
+   */
+  std::vector<std::string_view> qualifiers;
+  /** Subpass inputs: `input_attachment_index`; -1 for others. */
+  int attachment = -1;
+  /** Atomic counters: the place in the buffer of the slot. */
+  std::uint32_t offset_bytes = 0;
   /**
    * For blocks: the end of the last member, and in OpenGL, for uniform blocks, the end of its row of 16 bytes. An array
    * without a size counts as empty.
@@ -48,10 +81,31 @@ struct ProgramBinding {
   std::vector<Member> members;
   /** The stages that use it. */
   std::vector<Stage> stages;
+  bool operator==(const ProgramBinding &) const = default;
 };
 
-/** "uniform", "storage", "texture", "image", "push constants". */
+/** "uniform", "storage", "texture", "image", "push constants", "sampler", "subpass input" and so on. */
 [[nodiscard]] std::string_view to_string(ProgramBinding::Kind kind);
+
+/** A specialisation constant. */
+struct ProgramConstant {
+  /** Empty for those of `local_size_x_id`. */
+  std::string name;
+  /** GLSL's name of the type. */
+  std::string type;
+  /** `constant_id`. */
+  std::uint32_t id = 0;
+  std::variant<bool, std::int64_t, std::uint64_t, double> value;
+  bool operator==(const ProgramConstant &) const = default;
+};
+
+/** The size of the workgroups of a compute, task or mesh stage. */
+struct Workgroup {
+  Stage stage = Stage::Compute;
+  std::array<std::uint32_t, 3> size{};
+  /** The specialisation constants that set it; -1: none. */
+  std::array<int, 3> constant_ids{-1, -1, -1};
+};
 
 struct ProgramInterface {
   CheckTarget target = CheckTarget::OpenGlSpirv;
@@ -64,8 +118,14 @@ struct ProgramInterface {
    * members, such as `lights[0].color`, and an array of structs by its first element.
    */
   std::vector<StageVariable> uniforms;
-  /** Those that a stage uses, sorted by kind, set, slot and name. */
+  /**
+   * Those that a stage uses, sorted by kind, set, slot and name. Several stages share one only if it is the same in
+   * them.
+   */
   std::vector<ProgramBinding> bindings;
+  /** Sorted by id. */
+  std::vector<ProgramConstant> constants;
+  std::vector<Workgroup> workgroups;
 };
 
 /** \throws gpu::Error if \a desc does not compile. */

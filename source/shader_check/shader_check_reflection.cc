@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
 namespace gnomon::shader_check {
@@ -218,13 +219,16 @@ void check_slots(std::string_view name, const gpu::ShaderInterface &interface)
   }
 }
 
-std::vector<StageVariable> variables(const std::vector<Declaration> &declarations, bool is_arrayed)
+std::vector<StageVariable> variables(const std::vector<Declaration> &declarations)
 {
   std::vector<StageVariable> variables;
   for (const Declaration &declaration : declarations) {
-    variables.push_back({declaration.name, type_name(declaration.type, is_arrayed), declaration.location});
+    variables.push_back({declaration.name, type_name(declaration.type, declaration.is_arrayed), declaration.location,
+                         declaration.component, declaration.index});
   }
-  std::ranges::stable_sort(variables, {}, &StageVariable::location);
+  std::ranges::stable_sort(variables, {}, [](const StageVariable &variable) {
+    return std::tuple(variable.location, variable.index, variable.component);
+  });
   return variables;
 }
 
@@ -242,7 +246,7 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
                          bounded_lines(stage.name_files(compilation.glslang.log())));
       }
     }
-    if (!compilation.glslang.link()) {
+    if (!compilation.link()) {
       throw gpu::Error("shader '{}' does not link:\n{}", name, bounded_lines(compilation.glslang.log()));
     }
     compilation.read_facts(true, false);
@@ -260,53 +264,127 @@ std::string_view to_string(ProgramBinding::Kind kind)
     case ProgramBinding::Kind::StorageBlock: return to_string(gpu::BindingKind::StorageBlock);
     case ProgramBinding::Kind::Texture: return to_string(gpu::BindingKind::Texture);
     case ProgramBinding::Kind::Image: return "image";
-    case ProgramBinding::Kind::PushConstants: break;
+    case ProgramBinding::Kind::PushConstants: return "push constants";
+    case ProgramBinding::Kind::Sampler: return "sampler";
+    case ProgramBinding::Kind::SubpassInput: return "subpass input";
+    case ProgramBinding::Kind::AccelerationStructure: return "acceleration structure";
+    case ProgramBinding::Kind::AtomicCounter: return "atomic counter";
   }
-  return "push constants";
+  return "";
 }
 
 namespace {
 
-/** Adds those of \a declarations that \a stage uses. */
-void add_bindings(const std::vector<Declaration> &declarations, ProgramBinding::Kind kind, Stage stage,
-                  std::vector<ProgramBinding> &bindings)
+/** \a usual: the kind of the list that \a declaration is in. */
+ProgramBinding::Kind kind_of(const Declaration &declaration, ProgramBinding::Kind usual)
+{
+  using Kind = ProgramBinding::Kind;
+  const std::string_view type = declaration.type.name;
+  if (usual != Kind::Texture) {
+    return declaration.is_push_constant ? Kind::PushConstants : usual;
+  }
+  return declaration.is_image                 ? Kind::Image
+         : type == "sampler"                  ? Kind::Sampler
+         : type == "atomic_uint"              ? Kind::AtomicCounter
+         : type == "accelerationStructureEXT" ? Kind::AccelerationStructure
+         : declaration.attachment >= 0        ? Kind::SubpassInput
+                                              : usual;
+}
+
+/** Adds those of \a declarations that \a stage uses. \a booleans: booleans_in(). */
+void add_bindings(const std::vector<Declaration> &declarations, ProgramBinding::Kind usual, Stage stage,
+                  const std::map<std::string, std::string> &booleans, std::vector<ProgramBinding> &bindings)
 {
   for (const Declaration &declaration : declarations) {
     if (!declaration.is_used) {
       continue;
     }
-    ProgramBinding binding{.kind = declaration.is_push_constant ? ProgramBinding::Kind::PushConstants
-                                   : declaration.is_image       ? ProgramBinding::Kind::Image
-                                                                : kind,
+    ProgramBinding binding{.kind = kind_of(declaration, usual),
                            .name = declaration.name,
-                           .type = {},
+                           .type = usual == ProgramBinding::Kind::Texture ? type_name(declaration.type) : "",
+                           .counts = declaration.type.array_sizes,
                            .set = declaration.set,
                            .slot = declaration.slot,
+                           .format = declaration.format,
+                           .qualifiers = declaration.qualifiers,
+                           .attachment = declaration.attachment,
+                           .offset_bytes = declaration.offset_bytes,
                            .size_bytes = declaration.size_bytes,
                            .members = {},
-                           .stages = {stage}};
+                           .stages = {}};
+    for (const BlockMember &member : declaration.members) {
+      DeclaredType type = member.type;
+      const auto boolean = booleans.find(declaration.name + "." + member.name);
+      type.name = boolean == booleans.end() ? type.name : boolean->second;
+      binding.members.push_back({member.name, type_name(type), member.offset_bytes, member.size_bytes, member.arrays,
+                                 member.matrix_stride_bytes, member.is_row_major});
+    }
     const auto known = std::ranges::find_if(bindings, [&](const ProgramBinding &other) {
-      return std::tie(other.kind, other.set, other.slot, other.name) ==
-             std::tie(binding.kind, binding.set, binding.slot, binding.name);
+      binding.stages = other.stages;
+      return binding == other;
     });
     if (known != bindings.end()) {
       known->stages.push_back(stage);
       continue;
     }
-    if (binding.kind == ProgramBinding::Kind::Texture || binding.kind == ProgramBinding::Kind::Image) {
-      binding.type = type_name(declaration.type);
-    }
-    for (const BlockMember &member : declaration.members) {
-      binding.members.push_back(
-          {member.name, type_name(member.type), member.offset_bytes, member.size_bytes, member.arrays});
-    }
+    binding.stages = {stage};
     bindings.push_back(std::move(binding));
   }
+}
+
+/**
+ * Adds GLSL's types of boolean members of blocks, which are integers in SPIR-V, to \a types. Keys are the names of
+ * block and member, such as `Scene.lights[0].is_on`. \return false if \a program is not linked
+ */
+bool add_booleans(glslang::TProgram &program, std::map<std::string, std::string> &types)
+{
+  if (!program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables |
+                               EShReflectionStrictArraySuffix)) {
+    return false;
+  }
+  const auto add = [&](const glslang::TObjectReflection &member, std::string block) {
+    // GL_BOOL, and GL_BOOL_VEC2 to GL_BOOL_VEC4.
+    const int size = member.glDefineType - 0x8B56 + 1;
+    if (size < 1 || size > 4) {
+      return;
+    }
+    block.resize(std::min(block.find('['), block.size()));
+    std::string name = member.name.substr(member.name.starts_with(block + ".") ? block.size() + 1 : 0);
+    while (name.ends_with("[0]")) {
+      name.resize(name.size() - 3);
+    }
+    types.emplace(block + "." + name, size == 1 ? "bool" : fmt::format("bvec{}", size));
+  };
+  for (int i = 0; i < program.getNumUniformVariables(); i++) {
+    if (const int block = program.getUniform(i).index; block >= 0) {
+      add(program.getUniform(i), program.getUniformBlock(block).name);
+    }
+  }
+  for (int i = 0; i < program.getNumBufferVariables(); i++) {
+    add(program.getBufferVariable(i), program.getBufferBlock(program.getBufferVariable(i).index).name);
+  }
+  return true;
+}
+
+std::map<std::string, std::string> booleans_in(Compilation &compilation, CheckTarget target)
+{
+  std::map<std::string, std::string> types;
+  if (!add_booleans(compilation.glslang.program(), types)) {
+    // Blocks differ between the stages, which Vulkan allows and glslang does not.
+    for (const std::unique_ptr<StageSource> &source : compilation.sources) {
+      GlslangProgram alone;
+      if (alone.add(*source, target, false) && alone.link()) {
+        add_booleans(alone.program(), types);
+      }
+    }
+  }
+  return types;
 }
 
 /** The interface of a program that is linked for a target with SPIR-V. */
 ProgramInterface interface_of(Compilation &compilation, CheckTarget target)
 {
+  const std::map<std::string, std::string> booleans = booleans_in(compilation, target);
   ProgramInterface result;
   result.target = target;
   StageFacts facts;
@@ -314,9 +392,17 @@ ProgramInterface interface_of(Compilation &compilation, CheckTarget target)
     const Stage stage = compilation.sources[i]->stage();
     facts = read_spirv(compilation.spirv(i).words, stage, compilation.lines[i]);
     result.stages.push_back(stage);
-    add_bindings(facts.uniform_blocks, ProgramBinding::Kind::UniformBlock, stage, result.bindings);
-    add_bindings(facts.storage_blocks, ProgramBinding::Kind::StorageBlock, stage, result.bindings);
-    add_bindings(facts.textures, ProgramBinding::Kind::Texture, stage, result.bindings);
+    add_bindings(facts.uniform_blocks, ProgramBinding::Kind::UniformBlock, stage, booleans, result.bindings);
+    add_bindings(facts.storage_blocks, ProgramBinding::Kind::StorageBlock, stage, booleans, result.bindings);
+    add_bindings(facts.textures, ProgramBinding::Kind::Texture, stage, booleans, result.bindings);
+    for (const ProgramConstant &constant : facts.constants) {
+      if (std::ranges::find(result.constants, constant) == result.constants.end()) {
+        result.constants.push_back(constant);
+      }
+    }
+    if (facts.workgroup) {
+      result.workgroups.push_back(*facts.workgroup);
+    }
     for (const Declaration &uniform : facts.uniforms) {
       if (uniform.is_used &&
           std::ranges::find(result.uniforms, uniform.name, &StageVariable::name) == result.uniforms.end()) {
@@ -324,11 +410,11 @@ ProgramInterface interface_of(Compilation &compilation, CheckTarget target)
       }
     }
     if (i == 0) {
-      const bool is_arrayed = stage == Stage::Geometry || stage == Stage::TessControl || stage == Stage::TessEvaluation;
-      result.inputs = variables(facts.inputs, is_arrayed);
+      result.inputs = variables(facts.inputs);
     }
   }
-  result.outputs = variables(facts.outputs, false);
+  result.outputs = variables(facts.outputs);
+  std::ranges::stable_sort(result.constants, {}, &ProgramConstant::id);
   std::ranges::stable_sort(result.uniforms, {}, &StageVariable::location);
   for (ProgramBinding &binding : result.bindings) {
     const bool is_uniform =
@@ -387,7 +473,9 @@ ProgramInterface program_interface(const Program &program, const gpu::ShaderFile
                          first.position.line, to_string(target), first.text);
       }
     }
-    if (!compilation.glslang.link()) {
+    // The stages of a program for Vulkan may differ in what glslang compares by name, and check_program() has compared
+    // them.
+    if (!compilation.link() && !is_vulkan(target)) {
       throw gpu::Error("'{}' does not link for {}:\n{}", program.name, to_string(target),
                        bounded_lines(compilation.glslang.log()));
     }

@@ -439,8 +439,8 @@ TEST_F(ShaderFilesTest, AManifestIsReadAsItsSchemaSays)
   wrong = right;
   wrong["programs"][0]["defines"] = {"1X=1"};
   rejected(wrong, "/programs/0/defines/0: NAME or NAME=VALUE is needed");
-  wrong["programs"][0] = {{"files", {"lit.vert", "other.vert"}}};
-  rejected(wrong, "/programs/0/files/1: the program has two files of the vertex stage. It may have one of each");
+  wrong["programs"][0] = {{"files", {"lit.vert", "./lit.vert"}}};
+  rejected(wrong, "/programs/0/files/1: the program has this file twice");
   wrong["programs"][0] = {{"files", {{{"path", "any.glsl"}, {"stage", "vertex"}}}}};
   rejected(wrong, "/programs/0/files/0/stage: 'vertex' is no stage; there are vert, ");
   wrong["programs"][0] = {{"files", {{{"path", "any.glsl"}, {"stage", "vert"}, {"entry", "main"}}}}};

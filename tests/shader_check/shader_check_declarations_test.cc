@@ -93,7 +93,7 @@ TEST(Declarations, OfInputsAndOutputs)
                       "layout(location = 10) out S f;\nlayout(location = 20) out flat ivec3 g;\n"
                       "void main() { c = vec2(b[1]); gl_Position = vec4(a[0], gl_VertexIndex); }\n",
                       "in dmat3x3 a line 2 location 0+3\n"
-                      "in uvec2[2] b line 3 location 6+2\n"
+                      "in uvec2[2] b line 3 location 6+2 component 0+2\n"
                       "out S f line 8 unused location 10+3\n"
                       "out dvec3 e line 6 unused location 8+2\n"
                       "out ivec3 g line 9 unused location 20+1 component 0+3\n"
@@ -106,7 +106,7 @@ TEST(Declarations, OfMembersOfBlocksThatStagesShare)
   expect_declarations(Stage::Vertex,
                       "layout(location = 3) out Block {\nvec4 a;\nfloat b[3];\nlayout(location = 9) vec2 c;\n} block;\n"
                       "void main() { block.b[1] = 2.0; }\n",
-                      "out float[3] Block.b line 4 location 4+3\n"
+                      "out float[3] Block.b line 4 location 4+3 component 0+1\n"
                       "out vec2 Block.c line 5 unused location 9+1 component 0+2\n"
                       "out vec4 Block.a line 3 unused location 3+1 component 0+4\n");
   expect_declarations(Stage::Geometry,
@@ -124,9 +124,9 @@ TEST(Declarations, OfVerticesAndPatches)
       "layout(triangles) in;\nlayout(points, max_vertices = 1) out;\nlayout(location = 0) in vec3 a[];\n"
       "layout(location = 1) in vec2 b[][4];\nlayout(location = 0) out vec3 c[2];\n"
       "void main() { c[0] = a[1]; EmitVertex(); }\n",
-      "in vec2[4] b line 5 unused location 1+4\n"
+      "in vec2[4] b line 5 unused location 1+4 component 0+2\n"
       "in vec3 a line 4 location 0+1 component 0+3\n"
-      "out vec3[2] c line 6 location 0+2\n");
+      "out vec3[2] c line 6 location 0+2 component 0+3\n");
   expect_declarations(Stage::TessControl,
                       "layout(vertices = 3) out;\nlayout(location = 0) in vec3 a[];\n"
                       "layout(location = 0) out vec3 b[];\nlayout(location = 1) patch out vec3 c;\n"

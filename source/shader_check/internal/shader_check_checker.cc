@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -61,22 +62,30 @@ const CheckRule &rule_of(std::string_view name)
  */
 bool is_about_other_shaders(const LinkMessage &message)
 {
-  return message.severity == Severity::Warning ||
-         std::ranges::any_of(std::array{"Missing entry point", "No function definition", "At least one shader must"},
+  return std::ranges::any_of(std::array{"Missing entry point", "No function definition", "At least one shader must"},
                              [&](const char *part) { return message.text.find(part) != std::string::npos; });
 }
 
-bool is_difference_between_stages(const std::vector<LinkMessage> &messages)
+bool is_difference_between_stages(const std::vector<LinkMessage> &errors)
 {
-  return std::ranges::all_of(messages, [](const LinkMessage &message) {
+  return std::ranges::all_of(errors, [](const LinkMessage &message) {
     // "Linking vertex and fragment stages: …", and from glslang 15 on
     // "Linking fragment stage: … vertex stage: … fragment stage: …".
     const std::string_view text = message.text;
     const std::size_t head_length = std::min(text.find(':'), text.size());
-    return message.severity == Severity::Warning ||
-           find_word(text.substr(0, head_length), "stages") != std::string_view::npos ||
+    return find_word(text.substr(0, head_length), "stages") != std::string_view::npos ||
            text.substr(head_length).find(" stage: ") != std::string_view::npos;
   });
+}
+
+/**
+ * Whether \a message is about the sizes of arrays between two stages. glslang takes the arrays of `patch` variables for
+ * those of vertices, and wants one size for gl_TexCoord in both stages.
+ */
+bool is_about_sizes_of_varyings(const LinkMessage &message)
+{
+  return message.text.find("Array sizes must be compatible: ") != std::string::npos &&
+         message.text.find(" earlier stage: ") == std::string::npos;
 }
 
 /** Words of glslang's messages that are also words of GLSL. */
@@ -91,13 +100,40 @@ bool is_plain_word(std::string_view word)
 bool match(const Declaration &output, const Declaration &input)
 {
   if (output.location < 0 || input.location < 0) {
-    return output.name == input.name;
+    return output.location == input.location && output.name == input.name;
   }
   const bool has_components = output.component_count > 0 && input.component_count > 0;
   return output.location < input.location + input.location_count &&
          input.location < output.location + output.location_count &&
          !(has_components && (output.component >= input.component + input.component_count ||
                               input.component >= output.component + output.component_count));
+}
+
+/** Whether two types are equal without the outermost arrays of those that are arrayed. An array without a size has any.
+ */
+bool is_same_type(const DeclaredType &one, bool is_one_arrayed, const DeclaredType &other, bool is_other_arrayed)
+{
+  const auto sizes_of = [](const DeclaredType &type, bool is_arrayed) {
+    return std::span(type.array_sizes).subspan(is_arrayed && !type.array_sizes.empty() ? 1 : 0);
+  };
+  return one.name == other.name && std::ranges::equal(sizes_of(one, is_one_arrayed), sizes_of(other, is_other_arrayed),
+                                                      [](int size, int other_size) {
+                                                        return size == other_size || size == 0 || other_size == 0;
+                                                      });
+}
+
+/** Whether \a source has `#pragma STDGL invariant(all)`, which glslang reads for SPIR-V only. */
+bool has_invariant_outputs(const std::unique_ptr<StageSource> &source)
+{
+  const std::string_view text = source->text();
+  for (std::size_t at = find_word(text, "STDGL"); at != std::string_view::npos; at = find_word(text, "STDGL", at + 1)) {
+    std::string pragma(text.substr(at, text.substr(at).find('\n')));
+    std::erase_if(pragma, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    if (pragma.starts_with("STDGLinvariant(all)")) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::string named(const Declaration &varying)
@@ -126,9 +162,9 @@ Checker::Checker(std::string name, const std::vector<std::string> &defines, cons
   }
 }
 
-void Checker::refuse(std::string file, int line, std::string_view text)
+void Checker::refuse(std::string_view rule, std::string file, int line, std::string_view text)
 {
-  add(Severity::Error, "include", std::move(file), line, text);
+  add(Severity::Error, rule, std::move(file), line, text);
 }
 
 void Checker::compile(std::unique_ptr<StageSource> source)
@@ -279,13 +315,23 @@ void Checker::check_version(const StageSource &source)
 
 void Checker::link_stages()
 {
-  bool is_linked = c_.glslang.link();
+  bool is_linked = c_.link();
   const std::string log(c_.glslang.log());
+  std::vector<LinkMessage> errors = is_linked ? std::vector<LinkMessage>() : link_messages(log);
+  std::erase_if(errors, [](const LinkMessage &message) { return message.severity != Severity::Error; });
   if (!is_linked && c_.sources.size() == 1 && options_.target == CheckTarget::OpenGl &&
-      std::ranges::all_of(link_messages(log), is_about_other_shaders)) {
+      std::ranges::all_of(errors, is_about_other_shaders)) {
     return;
   }
-  c_.read_facts(is_linked || is_difference_between_stages(link_messages(log)), true);
+  // check_varyings() compares the sizes that a driver compares.
+  if (!has_spirv(options_.target) && left_out_rules(options_.target).empty() &&
+      std::erase_if(errors, is_about_sizes_of_varyings) > 0) {
+    is_linked = errors.empty();
+  }
+  c_.read_facts(is_linked || is_difference_between_stages(errors), true);
+  if (std::erase_if(errors, [&](const LinkMessage &error) { return is_about_unused_uniform(error); }) > 0) {
+    is_linked = errors.empty();
+  }
   check_findings();
   check_versions();
   if (is_vulkan(options_.target) && !settings_.is_own) {
@@ -293,19 +339,18 @@ void Checker::link_stages()
   }
   check_slots();
   check_varyings();
-  if (!is_linked && may_differ(link_messages(log))) {
-    add_block_differences(link_messages(log));
+  check_uniform_locations();
+  if (!is_linked && may_differ(errors)) {
+    add_block_differences(errors);
     is_linked = true;
   }
   // glslang's link errors have no line. They are reported only if our own checks, whose messages have lines, found no
   // mistake.
   if (!is_linked && !has_errors()) {
-    for (const LinkMessage &message : link_messages(log)) {
-      if (message.severity == Severity::Error) {
-        const auto [stage, position] = place_of(message.text);
-        const bool is_recursion = message.text.find("Recursion detected") != std::string::npos;
-        add(Severity::Error, is_recursion ? "recursion" : "link", stage, position, message.text);
-      }
+    for (const LinkMessage &message : errors) {
+      const auto [stage, position] = place_of(message.text);
+      const bool is_recursion = message.text.find("Recursion detected") != std::string::npos;
+      add(Severity::Error, is_recursion ? "recursion" : "link", stage, position, message.text);
     }
     if (!has_errors()) {
       add(Severity::Error, "link", c_.sources.size() - 1, SourcePosition(), log);
@@ -339,7 +384,7 @@ void Checker::add_block_differences(const std::vector<LinkMessage> &errors)
     const bool is_binding = std::ranges::any_of(c_.facts, [&](const StageFacts &facts) {
       return names_one(facts.uniform_blocks) || names_one(facts.storage_blocks) || names_one(facts.textures);
     });
-    if (message.severity == Severity::Error && is_binding) {
+    if (is_binding) {
       const auto [stage, position] = place_of(message.text);
       add(Severity::Warning, "block-match", stage, position, message.text);
     }
@@ -462,6 +507,49 @@ void Checker::check_slots()
   }
 }
 
+bool Checker::is_about_unused_uniform(const LinkMessage &error) const
+{
+  if (options_.target != CheckTarget::Es || !left_out_rules(options_.target).empty() ||
+      error.text.find("Precision qualifiers must match: ") == std::string::npos ||
+      std::ranges::any_of(c_.sources, [](const std::unique_ptr<StageSource> &source) {
+        return version_in(source->text()).value_or(Version{100, {}}).number >= 300;
+      })) {
+    return false;
+  }
+  return std::ranges::count_if(c_.facts, [&](const StageFacts &facts) {
+           return std::ranges::any_of(facts.uniforms, [&](const Declaration &uniform) {
+             return uniform.is_used && find_word(error.text, uniform.name) != std::string_view::npos;
+           });
+         }) < 2;
+}
+
+void Checker::check_uniform_locations()
+{
+  if (has_spirv(options_.target)) {
+    return;
+  }
+  std::vector<StageDeclaration> known;
+  for (std::size_t i = 0; i < c_.facts.size(); i++) {
+    for (const Declaration &uniform : c_.facts[i].uniforms) {
+      if (uniform.location < 0) {
+        continue;
+      }
+      const auto other = std::ranges::find_if(known, [&](const StageDeclaration &one) {
+        const Declaration &earlier = *one.declaration;
+        return earlier.name != uniform.name && earlier.location < uniform.location + uniform.location_count &&
+               uniform.location < earlier.location + earlier.location_count;
+      });
+      if (other != known.end()) {
+        add(Severity::Error, "link", i, uniform.position,
+            fmt::format("uniform '{}' has location {}, which uniform '{}' has in the {} stage", uniform.name,
+                        std::max(uniform.location, other->declaration->location), other->declaration->name,
+                        to_string(c_.sources[other->stage]->stage())));
+      }
+      known.push_back({i, &uniform});
+    }
+  }
+}
+
 bool Checker::is_part(const Declaration &output, const Declaration &input) const
 {
   const bool is_allowed =
@@ -491,6 +579,11 @@ void Checker::check_versions()
   }
 }
 
+std::string_view Checker::stage_before(std::size_t stage) const
+{
+  return to_string(c_.sources[c_.stage_of(stage).begin - 1]->stage());
+}
+
 void Checker::check_qualifiers(std::size_t stage, const Declaration &input, const Declaration &output)
 {
   if (has_spirv(options_.target)) {
@@ -502,7 +595,7 @@ void Checker::check_qualifiers(std::size_t stage, const Declaration &input, cons
     const Version other = version_in(source->text()).value_or(version);
     version = other.number > version.number ? other : version;
   }
-  const std::string_view before = to_string(c_.sources[stage - 1]->stage());
+  const std::string_view before = stage_before(stage);
   const auto name_of = [](const Declaration &one) {
     return one.is_flat ? "flat" : one.is_no_perspective ? "noperspective" : "smooth";
   };
@@ -512,7 +605,8 @@ void Checker::check_qualifiers(std::size_t stage, const Declaration &input, cons
                     name_of(input), before, name_of(output)));
   }
   // GLSL ES 3.00 and GLSL 4.20 made `invariant` a matter of outputs.
-  if ((version.is_es() ? version.number < 300 : version.number < 420) && input.is_invariant != output.is_invariant) {
+  if ((version.is_es() ? version.number < 300 : version.number < 420) && input.is_invariant != output.is_invariant &&
+      std::ranges::none_of(c_.sources, has_invariant_outputs)) {
     add(Severity::Error, "link", stage, input.position,
         fmt::format("input {} is {}invariant, and the output of the {} stage is {}invariant; before GLSL 4.20 and GLSL "
                     "ES 3.00 both must be",
@@ -522,10 +616,11 @@ void Checker::check_qualifiers(std::size_t stage, const Declaration &input, cons
 
 void Checker::check_members(std::size_t stage, const Declaration &input, const Declaration &output)
 {
-  const std::string_view before = to_string(c_.sources[stage - 1]->stage());
-  const auto [read, written] = std::ranges::mismatch(
-      input.members, output.members, {}, [](const BlockMember &member) { return type_name(member.type); },
-      [](const BlockMember &member) { return type_name(member.type); });
+  const std::string_view before = stage_before(stage);
+  const auto [read, written] =
+      std::ranges::mismatch(input.members, output.members, [](const BlockMember &one, const BlockMember &other) {
+        return is_same_type(one.type, false, other.type, false);
+      });
   if (read != input.members.end() && written != output.members.end()) {
     add(Severity::Error, "varying-type", stage, read->position,
         fmt::format("member '{}' of the input {} is {}, and the {} stage writes {}", read->name, named(input),
@@ -538,45 +633,84 @@ void Checker::check_members(std::size_t stage, const Declaration &input, const D
   }
 }
 
+void Checker::check_input(std::size_t stage, const Declaration &input, const std::vector<StageDeclaration> &outputs)
+{
+  const std::string_view before = stage_before(stage);
+  const auto found =
+      std::ranges::find_if(outputs, [&](const StageDeclaration &output) { return match(*output.declaration, input); });
+  if (found == outputs.end()) {
+    const auto named_alike = std::ranges::find_if(
+        outputs, [&](const StageDeclaration &output) { return output.declaration->name == input.name; });
+    if (input.is_used) {
+      add(Severity::Error, "missing-varying", stage, input.position,
+          fmt::format("input {} is no output of the {} stage{}", named(input), before,
+                      named_alike == outputs.end()             ? ""
+                      : named_alike->declaration->location < 0 ? fmt::format(", whose '{}' has no location", input.name)
+                                                               : fmt::format(", whose '{}' has location {}", input.name,
+                                                                             named_alike->declaration->location)));
+    }
+    return;
+  }
+  const Declaration &output = *found->declaration;
+  check_qualifiers(stage, input, output);
+  if (output.location != input.location || output.component != input.component) {
+    // A part of an output, such as a column of a matrix, or parts of several.
+    for (int i = 0; input.is_used && i < input.location_count; i++) {
+      const int location = input.location + i;
+      if (std::ranges::none_of(outputs, [&](const StageDeclaration &one) {
+            return one.declaration->location <= location &&
+                   location < one.declaration->location + one.declaration->location_count;
+          })) {
+        add(Severity::Error, "missing-varying", stage, input.position,
+            fmt::format("input {} has location {} as well, which no output of the {} stage has", named(input), location,
+                        before));
+        break;
+      }
+    }
+    return;
+  }
+  if (input.type.is_struct && output.type.is_struct) {
+    check_members(stage, input, output);
+  }
+  else if (!is_same_type(output.type, output.is_arrayed, input.type, input.is_arrayed) && !input.type.is_struct &&
+           !is_part(output, input)) {
+    add(Severity::Error, "varying-type", stage, input.position,
+        fmt::format("input {} is {}, and the {} stage writes {}", named(input), type_name(input.type, input.is_arrayed),
+                    before, type_name(output.type, output.is_arrayed)));
+  }
+}
+
 void Checker::check_varyings()
 {
-  for (std::size_t i = 1; i < c_.facts.size(); i++) {
-    if (!is_pipeline(c_.sources[i]->stage()) || c_.sources[i - 1]->stage() == Stage::Task) {
-      continue;
+  std::vector<StageDeclaration> outputs;
+  std::vector<StageDeclaration> inputs;
+  for (std::size_t begin = 0; begin < c_.sources.size(); begin = c_.stage_of(begin).end) {
+    inputs.clear();
+    std::vector<StageDeclaration> next_outputs;
+    for (std::size_t i = begin; i < c_.stage_of(begin).end; i++) {
+      std::ranges::transform(c_.facts[i].inputs, std::back_inserter(inputs), [&](const Declaration &input) {
+        return StageDeclaration{i, &input};
+      });
+      std::ranges::transform(c_.facts[i].outputs, std::back_inserter(next_outputs), [&](const Declaration &output) {
+        return StageDeclaration{i, &output};
+      });
     }
-    const std::string_view before = to_string(c_.sources[i - 1]->stage());
-    const std::vector<Declaration> &outputs = c_.facts[i - 1].outputs;
-    for (const Declaration &input : c_.facts[i].inputs) {
-      const auto output = std::ranges::find_if(outputs, [&](const Declaration &o) { return match(o, input); });
-      if (output == outputs.end()) {
-        if (input.is_used) {
-          add(Severity::Error, "missing-varying", i, input.position,
-              fmt::format("input {} is no output of the {} stage", named(input), before));
+    const Stage stage = c_.sources[begin]->stage();
+    if (begin > 0 && is_pipeline(stage) && c_.sources[begin - 1]->stage() != Stage::Task) {
+      for (const StageDeclaration &input : inputs) {
+        check_input(input.stage, *input.declaration, outputs);
+      }
+      for (const StageDeclaration &output : outputs) {
+        if (!output.declaration->is_captured && std::ranges::none_of(inputs, [&](const StageDeclaration &input) {
+              return (input.declaration->is_used || input.declaration->is_block_used) &&
+                     match(*output.declaration, *input.declaration);
+            })) {
+          add(Severity::Warning, "unread-output", output.stage, output.declaration->position,
+              fmt::format("output '{}' is not read by the {} stage", output.declaration->name, to_string(stage)));
         }
-        continue;
-      }
-      check_qualifiers(i, input, *output);
-      if (output->location != input.location || output->component != input.component) {
-        continue;
-      }
-      const std::string written = type_name(output->type, output->is_arrayed);
-      const std::string read = type_name(input.type, input.is_arrayed);
-      if (input.type.is_struct && output->type.is_struct) {
-        check_members(i, input, *output);
-      }
-      else if (written != read && !input.type.is_struct && !is_part(*output, input)) {
-        add(Severity::Error, "varying-type", i, input.position,
-            fmt::format("input {} is {}, and the {} stage writes {}", named(input), read, before, written));
       }
     }
-    for (const Declaration &output : outputs) {
-      if (!output.is_captured && std::ranges::none_of(c_.facts[i].inputs, [&](const Declaration &input) {
-            return (input.is_used || input.is_block_used) && match(output, input);
-          })) {
-        add(Severity::Warning, "unread-output", i - 1, output.position,
-            fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i]->stage())));
-      }
-    }
+    outputs = std::move(next_outputs);
   }
 }
 

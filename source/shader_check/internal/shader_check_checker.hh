@@ -30,8 +30,8 @@ struct CheckSettings {
 class Checker {
  public:
   Checker(std::string name, const std::vector<std::string> &defines, const CheckSettings &settings);
-  /** A stage that cannot be read. */
-  void refuse(std::string file, int line, std::string_view text);
+  /** A stage that cannot be read or linked. */
+  void refuse(std::string_view rule, std::string file, int line, std::string_view text);
   /** Compiles the next stage. */
   void compile(std::unique_ptr<StageSource> source);
   /** Links the stages and checks them together. */
@@ -67,6 +67,10 @@ class Checker {
   void check_kinds();
   void check_findings();
   void check_slots();
+  /** Whether \a error is about the precision of a uniform that GLSL ES 1.00 compares only if two stages use it. */
+  [[nodiscard]] bool is_about_unused_uniform(const LinkMessage &error) const;
+  /** Uniforms of OpenGL that share a location, about which glslang is silent. */
+  void check_uniform_locations();
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
   [[nodiscard]] bool is_part(const Declaration &output, const Declaration &input) const;
   /** OpenGL ES links stages of one version, and none with one of the desktop. glslang links any. */
@@ -75,6 +79,10 @@ class Checker {
   void check_qualifiers(std::size_t stage, const Declaration &input, const Declaration &output);
   /** An input and an output that are structs. Their members are compared in their order; names may differ. */
   void check_members(std::size_t stage, const Declaration &input, const Declaration &output);
+  /** The text of the stage before that of the source \a stage. */
+  [[nodiscard]] std::string_view stage_before(std::size_t stage) const;
+  /** \a outputs: those of the stage before. */
+  void check_input(std::size_t stage, const Declaration &input, const std::vector<StageDeclaration> &outputs);
   void check_varyings();
   void check_unused_bindings();
   void check_blocks();

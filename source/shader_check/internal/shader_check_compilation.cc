@@ -4,6 +4,9 @@
 #include "shader_check_log.hh"
 
 #include <glslang/SPIRV/GlslangToSpv.h>
+#if GNOMON_GLSLANG_TREE
+#include <glslang/Include/PoolAlloc.h>
+#endif
 
 #include <algorithm>
 
@@ -19,6 +22,36 @@ bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, b
   }
   lines.emplace_back(*sources.back()).read(target);
   return is_done;
+}
+
+Compilation::Range Compilation::stage_of(std::size_t source) const
+{
+  Range range{source, source + 1};
+  const auto is_of_stage = [&](std::size_t i) { return sources[i]->stage() == sources[source]->stage(); };
+  while (range.begin > 0 && is_of_stage(range.begin - 1)) {
+    range.begin--;
+  }
+  while (range.end < sources.size() && is_of_stage(range.end)) {
+    range.end++;
+  }
+  return range;
+}
+
+bool Compilation::link()
+{
+#if GNOMON_GLSLANG_TREE
+  facts.resize(sources.size());
+  // For what reads the trees. Linking sets that of the program.
+  glslang::TPoolAllocator pool;
+  glslang::SetThreadPoolAllocator(&pool);
+  for (std::size_t i = 0; i < sources.size(); i++) {
+    // glslang joins their trees, in which the files of several sources have the same names.
+    if (stage_of(i).size() > 1 && glslang.tree(i) != nullptr) {
+      facts[i] = read_tree(*glslang.tree(i), lines[i], true);
+    }
+  }
+#endif
+  return glslang.link();
 }
 
 const Spirv &Compilation::spirv(std::size_t stage)
@@ -37,7 +70,7 @@ void Compilation::read_facts([[maybe_unused]] bool is_sound, [[maybe_unused]] bo
 {
   facts.resize(sources.size());
   for (std::size_t i = 0; i < sources.size(); i++) {
-    if (tree(i) == nullptr) {
+    if (tree(i) == nullptr || stage_of(i).size() > 1) {
       continue;
     }
 #if GNOMON_GLSLANG_TREE
@@ -64,7 +97,7 @@ void compile(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files, Compila
                        bounded_lines(source.name_files(compilation.glslang.log())));
     }
   }
-  if (!compilation.glslang.link()) {
+  if (!compilation.link()) {
     throw gpu::Error("shader '{}' does not link:\n{}", desc.name, bounded_lines(compilation.glslang.log()));
   }
   compilation.read_facts(true, false);

@@ -14,15 +14,28 @@ struct Spirv {
 
 /** One shader for one target: its sources, glslang's program, and facts about its stages. */
 struct Compilation {
-  /** In the order of stages. */
+  /** In the order of stages. OpenGL may have several of one stage. */
   std::vector<std::unique_ptr<StageSource>> sources;
   std::vector<SourceLines> lines;
   GlslangProgram glslang;
-  /** Parallel to sources; empty until linked. */
+  /** Parallel to sources; empty until linked. Sources of one stage have facts of their own. */
   std::vector<StageFacts> facts;
 
   /** Compiles the next stage. The target is the same for all. \a needs_slots: as for GlslangProgram::add(). */
   bool add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots = true);
+  /** The sources of one stage: the index of the first, and one behind the last. */
+  struct Range {
+    std::size_t begin;
+    std::size_t end;
+    [[nodiscard]] std::size_t size() const
+    {
+      return end - begin;
+    }
+  };
+  /** The sources of the stage of \a source. */
+  [[nodiscard]] Range stage_of(std::size_t source) const;
+  /** As GlslangProgram::link(). Call it once, after all sources. */
+  bool link();
   /** The stage in SPIR-V. Call it after linking, for targets with SPIR-V. */
   const Spirv &spirv(std::size_t stage);
   /**

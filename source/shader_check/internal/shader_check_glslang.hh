@@ -41,6 +41,11 @@ class GlslangProgram {
   {
     return log_;
   }
+  /** The tree of an added source by itself. Linking may add those of others to it. */
+  [[nodiscard]] const glslang::TIntermediate *tree(std::size_t source) const
+  {
+    return shaders_[source]->getIntermediate();
+  }
   [[nodiscard]] glslang::TProgram &program()
   {
     return *program_;

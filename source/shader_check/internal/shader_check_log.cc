@@ -190,6 +190,16 @@ std::vector<LinkMessage> link_messages(std::string_view log)
       messages.back().text += fmt::format(" {}", without_space_at_end(scanner.skip_space().rest()));
     }
   }
+  for (LinkMessage &message : messages) {
+    // glslang's name for the uniforms of all stages before.
+    for (const auto &[name, plain] :
+         {std::pair<std::string_view, std::string_view>("unknown stage stage", "earlier stage"),
+          {"unknown stage", "earlier"}}) {
+      for (std::size_t at = message.text.find(name); at != std::string::npos; at = message.text.find(name)) {
+        message.text.replace(at, name.size(), plain);
+      }
+    }
+  }
   return messages;
 }
 

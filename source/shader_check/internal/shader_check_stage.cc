@@ -6,8 +6,11 @@
 #include <spirv-tools/libspirv.h>
 #include <glslang/SPIRV/spirv.hpp>
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <map>
 #include <set>
 #include <utility>
@@ -47,6 +50,20 @@ void check_array(const DeclaredType &type, bool has_rows, const BlockMember &mem
   }
 }
 
+bool is_64_bit(const DeclaredType &type)
+{
+  return type.scalar == "double" || type.scalar.ends_with("64_t");
+}
+
+void set_components(Declaration &declaration, int first)
+{
+  const DeclaredType &type = declaration.type;
+  if (!type.is_struct && type.row_count == 0) {
+    declaration.component = first;
+    declaration.component_count = type.vector_size * (is_64_bit(type) ? 2 : 1);
+  }
+}
+
 namespace {
 
 /** Values by decoration; 0 for those without. */
@@ -78,6 +95,17 @@ struct SpirvModule {
   std::map<std::uint32_t, Decorations> decorations;
   /** Constants of one word. */
   std::map<std::uint32_t, std::uint32_t> constants;
+  struct SpecConstant {
+    std::uint32_t id;
+    std::uint32_t type;
+    std::uint64_t bits;
+  };
+  std::vector<SpecConstant> spec_constants;
+  /** Those of vectors, by id. */
+  std::map<std::uint32_t, std::vector<std::uint32_t>> constituents;
+  /** Values of LocalSize, or ids of LocalSizeId. */
+  std::vector<std::uint32_t> local_size;
+  bool has_local_size_ids = false;
   /** Outside of functions. */
   std::vector<SpirvVariable> variables;
   /** By id: whether a function uses it. */
@@ -146,8 +174,24 @@ struct SpirvModule {
       case spv::OpMemberName: types[words[1]].members[words[2]].name = text_at(one, 3); break;
       case spv::OpDecorate: decorations[words[1]].insert(decoration_at(one, 2)); break;
       case spv::OpMemberDecorate: types[words[1]].members[words[2]].decorations.insert(decoration_at(one, 3)); break;
-      case spv::OpConstant:
-      case spv::OpSpecConstant: constants[one.result_id] = words[3]; break;
+      case spv::OpSpecConstantTrue:
+      case spv::OpSpecConstantFalse:
+        spec_constants.push_back({one.result_id, one.type_id, one.opcode == spv::OpSpecConstantTrue ? 1U : 0U});
+        break;
+      case spv::OpSpecConstant:
+        spec_constants.push_back(
+            {one.result_id, one.type_id, words[3] | (one.num_words > 4 ? std::uint64_t(words[4]) << 32U : 0U)});
+        [[fallthrough]];
+      case spv::OpConstant: constants[one.result_id] = words[3]; break;
+      case spv::OpConstantComposite:
+      case spv::OpSpecConstantComposite: constituents[one.result_id].assign(words + 3, words + one.num_words); break;
+      case spv::OpExecutionMode:
+      case spv::OpExecutionModeId:
+        if (words[2] == spv::ExecutionModeLocalSize || words[2] == spv::ExecutionModeLocalSizeId) {
+          local_size.assign(words + 3, words + one.num_words);
+          has_local_size_ids = words[2] == spv::ExecutionModeLocalSizeId;
+        }
+        break;
       case spv::OpVariable: variables.push_back({one.result_id, one.type_id, spv::StorageClass(words[3])}); break;
       default:
         // An instruction with an id and without a type declares a type, a label, a group of decorations or an
@@ -169,6 +213,10 @@ class SpirvReader {
     for (const SpirvVariable &variable : module.variables) {
       add(variable);
     }
+    for (const SpirvModule::SpecConstant &constant : module.spec_constants) {
+      add(constant);
+    }
+    set_workgroup();
   }
   StageFacts facts;
 
@@ -234,6 +282,46 @@ class SpirvReader {
       default: return {};
     }
   }
+  /** GLSL's name of the format of an image; empty if it has none. */
+  static std::string_view format_name(std::uint32_t format)
+  {
+    static constexpr std::array<std::string_view, 42> names = {"",          "rgba32f",      "rgba16f",
+                                                               "r32f",      "rgba8",        "rgba8_snorm",
+                                                               "rg32f",     "rg16f",        "r11f_g11f_b10f",
+                                                               "r16f",      "rgba16",       "rgb10_a2",
+                                                               "rg16",      "rg8",          "r16",
+                                                               "r8",        "rgba16_snorm", "rg16_snorm",
+                                                               "rg8_snorm", "r16_snorm",    "r8_snorm",
+                                                               "rgba32i",   "rgba16i",      "rgba8i",
+                                                               "r32i",      "rg32i",        "rg16i",
+                                                               "rg8i",      "r16i",         "r8i",
+                                                               "rgba32ui",  "rgba16ui",     "rgba8ui",
+                                                               "r32ui",     "rgb10_a2ui",   "rg32ui",
+                                                               "rg16ui",    "rg8ui",        "r16ui",
+                                                               "r8ui",      "r64ui",        "r64i"};
+    return format < names.size() ? names[format] : std::string_view();
+  }
+  /** Qualifiers of an image, or those that each member of the struct \a block has. */
+  std::vector<std::string_view> qualifiers(std::uint32_t id, const SpirvType *block) const
+  {
+    static constexpr std::array<std::pair<spv::Decoration, std::string_view>, 5> all = {
+        {{spv::DecorationNonWritable, "readonly"},
+         {spv::DecorationNonReadable, "writeonly"},
+         {spv::DecorationRestrict, "restrict"},
+         {spv::DecorationCoherent, "coherent"},
+         {spv::DecorationVolatile, "volatile"}}};
+    std::vector<std::string_view> names;
+    for (const auto &[decoration, name] : all) {
+      bool is_of_all = block != nullptr && !block->operands.empty();
+      for (std::uint32_t i = 0; is_of_all && i < block->operands.size(); i++) {
+        is_of_all = find(member_of(*block, i).decorations, decoration) != nullptr;
+      }
+      if (is_of_all || find(id, decoration) != nullptr) {
+        names.push_back(name);
+      }
+    }
+    return names;
+  }
   /** The name of a sampler, texture, image or reference. */
   std::string opaque_name(std::uint32_t id) const
   {
@@ -244,11 +332,13 @@ class SpirvReader {
     if (type.op == spv::OpTypeAccelerationStructureKHR) {
       return "accelerationStructureEXT";
     }
-    const bool is_combined = type.op == spv::OpTypeSampledImage;
-    const SpirvType &image = is_combined ? module_.type(type.operands[0]) : type;
+    const SpirvType &image = type.op == spv::OpTypeSampledImage ? module_.type(type.operands[0]) : type;
     if (image.op != spv::OpTypeImage) {
       return "sampler";
     }
+    // Vulkan has samplerBuffer, which needs no sampler, as an image.
+    const bool is_combined =
+        type.op == spv::OpTypeSampledImage || (image.operands[1] == spv::DimBuffer && image.operands[5] != 2);
     // Words of OpTypeImage: sampled type, dimension, depth, arrayed, multisampled, whether it is sampled: 2 for not.
     static constexpr std::array<std::string_view, 7> dimensions = {"1D", "2D", "3D", "Cube", "2DRect", "Buffer", ""};
     const bool is_input = image.operands[1] == spv::DimSubpassData;
@@ -364,7 +454,9 @@ class SpirvReader {
       }
       block.members.push_back({name, structure, lines_.find_member(position, member.name),
                                declared_type(type.operands[i]), offset_bytes,
-                               size_of(type.operands[i], member.decorations), std::move(arrays)});
+                               size_of(type.operands[i], member.decorations), std::move(arrays),
+                               std::uint32_t(value_or(find(member.decorations, spv::DecorationMatrixStride), 0)),
+                               find(member.decorations, spv::DecorationRowMajor) != nullptr});
       const bool has_rows = value_or(find(type.operands[i], spv::DecorationArrayStride), 0) == 16;
       check_array(declared_type(type.operands[i]), has_rows, block.members.back(), facts.findings);
     }
@@ -421,11 +513,10 @@ class SpirvReader {
         declaration.is_arrayed && is_array(module_.type(type)) ? module_.type(type).operands[0] : type;
     declaration.location_count = std::max(location_count(element, is_input && stage_ == Stage::Vertex), 1);
     const DeclaredType &declared = declaration.type;
-    if (declaration.location_count == 1 && !declared.is_struct && declared.row_count == 0 &&
-        declared.scalar != "double") {
-      declaration.component = value_or(find(decorations, spv::DecorationComponent), 0);
-      declaration.component_count = declared.vector_size;
+    if (location_count(element_of(type), is_input && stage_ == Stage::Vertex) == 1) {
+      set_components(declaration, value_or(find(decorations, spv::DecorationComponent), 0));
     }
+    declaration.index = value_or(find(decorations, spv::DecorationIndex), 0);
     if (declared.is_struct) {
       std::vector<int> outer = declared.array_sizes;
       outer.erase(outer.begin(), outer.begin() + (declaration.is_arrayed && !outer.empty() ? 1 : 0));
@@ -523,6 +614,7 @@ class SpirvReader {
     declaration.is_push_constant =
         variable.storage == spv::StorageClassPushConstant || declaration.name == gpu::push_constant_block_name;
     declaration.size_bytes = size_of(element, {});
+    declaration.qualifiers = is_buffer ? qualifiers(variable.id, &module_.type(element)) : declaration.qualifiers;
     add_members(element, "", "", declaration.position, 0, {}, declaration);
     (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
   }
@@ -568,7 +660,66 @@ class SpirvReader {
       return;
     }
     declaration.position = lines_.find_declaration(declaration.name, "uniform");
+    declaration.attachment = value_or(find(variable.id, spv::DecorationInputAttachmentIndex), -1);
+    if (is_atomic) {
+      declaration.type.name = "atomic_uint";
+      declaration.offset_bytes = std::uint32_t(value_or(find(variable.id, spv::DecorationOffset), 0));
+    }
+    if (declaration.is_image) {
+      declaration.format = format_name(element.operands[6]);
+      declaration.qualifiers = qualifiers(variable.id, nullptr);
+    }
     facts.textures.push_back(std::move(declaration));
+  }
+
+  void add(const SpirvModule::SpecConstant &constant)
+  {
+    const std::uint32_t *id = find(constant.id, spv::DecorationSpecId);
+    if (id == nullptr) {
+      return;
+    }
+    ProgramConstant added{module_.name(constant.id), scalar_name(constant.type).first, *id, {}};
+    const SpirvType &type = module_.type(constant.type);
+    const std::uint32_t bits = type.operands.empty() ? 0U : type.operands[0];
+    if (type.op == spv::OpTypeBool) {
+      added.value = constant.bits != 0;
+    }
+    else if (type.op == spv::OpTypeFloat) {
+      added.value = bits == 64   ? std::bit_cast<double>(constant.bits)
+                    : bits == 32 ? double(std::bit_cast<float>(std::uint32_t(constant.bits)))
+                                 : double(glm::unpackHalf1x16(std::uint16_t(constant.bits)));
+    }
+    else if (type.operands[1] == 0) {
+      added.value = constant.bits;
+    }
+    else {
+      // Words hold narrow values with their signs.
+      added.value = bits == 64 ? std::int64_t(constant.bits) : std::int64_t(std::int32_t(constant.bits));
+    }
+    if (std::ranges::find(facts.constants, added) == facts.constants.end()) {
+      facts.constants.push_back(std::move(added));
+    }
+  }
+
+  void set_workgroup()
+  {
+    if (module_.local_size.size() != 3) {
+      return;
+    }
+    // Before SPIR-V 1.6 the built-in vector has the ids.
+    std::vector<std::uint32_t> ids = module_.has_local_size_ids ? module_.local_size : std::vector<std::uint32_t>(3);
+    for (const auto &[id, parts] : module_.constituents) {
+      const std::uint32_t *built_in = find(id, spv::DecorationBuiltIn);
+      if (built_in != nullptr && *built_in == spv::BuiltInWorkgroupSize) {
+        ids = parts;
+      }
+    }
+    facts.workgroup = Workgroup{stage_};
+    for (std::size_t i = 0; i < 3; i++) {
+      const auto value = module_.constants.find(ids.at(i));
+      facts.workgroup->size[i] = value == module_.constants.end() ? module_.local_size[i] : value->second;
+      facts.workgroup->constant_ids[i] = value_or(find(ids[i], spv::DecorationSpecId), -1);
+    }
   }
 
   const SpirvModule &module_;

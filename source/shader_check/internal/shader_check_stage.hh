@@ -46,6 +46,8 @@ struct BlockMember {
   std::uint32_t offset_bytes = 0;
   std::uint32_t size_bytes = 0;
   std::vector<ProgramBinding::Array> arrays{};
+  std::uint32_t matrix_stride_bytes = 0;
+  bool is_row_major = false;
 };
 
 /** A block, texture, stage input or stage output. */
@@ -58,7 +60,7 @@ struct Declaration {
   int slot = -1;
   int location = -1;
   int location_count = 1;
-  /** The first component within the location, and the number of components; 0: all four. */
+  /** The first component within each location, and the number of components; 0: all four. */
   int component = 0;
   int component_count = 0;
   /** Whether the outermost array holds the vertices or primitives that a stage works on. */
@@ -73,6 +75,12 @@ struct Declaration {
   bool is_no_perspective = false;
   bool is_invariant = false;
   bool is_push_constant = false;
+  /** As in StageVariable and ProgramBinding. Only read_spirv() sets them. */
+  int index = 0;
+  std::string_view format{};
+  std::vector<std::string_view> qualifiers{};
+  int attachment = -1;
+  std::uint32_t offset_bytes = 0;
   /** Whether it is an image, which OpenGL numbers apart from textures. */
   bool is_image = false;
   /**
@@ -88,12 +96,21 @@ struct StageFacts {
   std::vector<Declaration> uniform_blocks;
   std::vector<Declaration> storage_blocks;
   std::vector<Declaration> textures;
-  /** Outside of blocks, of structs each member. Only read_spirv() sets them. */
+  /** Outside of blocks. From SPIR-V, of structs each member. */
   std::vector<Declaration> uniforms;
   std::vector<Declaration> inputs;
   std::vector<Declaration> outputs;
+  /** Only read_spirv() sets them. */
+  std::vector<ProgramConstant> constants;
+  std::optional<Workgroup> workgroup;
   std::vector<StageFinding> findings;
 };
+
+/** Whether each component takes 64 bits. */
+[[nodiscard]] bool is_64_bit(const DeclaredType &type);
+
+/** Sets the components of an input or output each of whose elements takes one location. */
+void set_components(Declaration &declaration, int first);
 
 /** Reports \a member if it is an array whose elements C++ packs. \a has_rows: whether each element fills 16 bytes. */
 void check_array(const DeclaredType &type, bool has_rows, const BlockMember &member,

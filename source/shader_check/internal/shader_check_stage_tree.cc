@@ -196,10 +196,9 @@ void set_locations(Declaration &declaration, const TType &type, bool is_arrayed,
   const int count = TIntermediate::computeTypeLocationSize(type, language);
   const int elements = is_arrayed && type.isArray() ? std::max(type.getOuterArraySize(), 1) : 1;
   declaration.location_count = std::max(count / elements, 1);
-  const bool is_double = type.getBasicType() == glslang::EbtDouble;
-  if (declaration.location_count == 1 && !type.isStruct() && !type.isMatrix() && !is_double) {
-    declaration.component = qualifier.hasComponent() ? int(qualifier.layoutComponent) : 0;
-    declaration.component_count = type.getVectorSize();
+  const bool is_wide = is_64_bit(declaration.type) && type.getVectorSize() > 2;
+  if (!is_wide || (language == EShLangVertex && qualifier.isPipeInput())) {
+    set_components(declaration, qualifier.hasComponent() ? int(qualifier.layoutComponent) : 0);
   }
   if (type.isStruct()) {
     std::vector<int> outer = declaration.type.array_sizes;
@@ -272,9 +271,16 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
       declaration.slot = qualifier.isPushConstant() ? -1 : declaration.slot;
       (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
     }
-    else if (type.containsOpaque()) {
-      declaration.is_image = type.getBasicType() == glslang::EbtSampler && type.getSampler().isImage();
-      facts.textures.push_back(std::move(declaration));
+    else {
+      facts.uniforms.push_back(declaration);
+      if (qualifier.hasLocation()) {
+        facts.uniforms.back().location = int(qualifier.layoutLocation);
+        facts.uniforms.back().location_count = TIntermediate::computeTypeUniformLocationSize(type);
+      }
+      if (type.containsOpaque()) {
+        declaration.is_image = type.getBasicType() == glslang::EbtSampler && type.getSampler().isImage();
+        facts.textures.push_back(std::move(declaration));
+      }
     }
   }
   else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
