@@ -25,7 +25,7 @@ struct WorldParts {
   vec3 negative;
 };
 
-/** From the probes above the plane of \a surface. */
+/** The light that arrives at \a surface, from the probes above its plane. */
 WorldParts world_parts(Surface surface)
 {
   if (WORLD_OCCLUSION == 0) {

@@ -286,8 +286,8 @@ class RenderScene {
 /**
  * An origin for a view at \a position_ws. Returns \a current while each coordinate of the position is within a step of
  * it, so that a moving camera rarely changes the origin. Otherwise each coordinate is the nearest multiple of the step.
- * It is 1024 m, or the largest power of two up to 256 times the radius of \a bounds_ws, if that is less: the bounds of
- * a scene, with any origin.
+ * The step is 1024 m, or, if that is less, the largest power of two up to 256 times the radius of \a bounds_ws, the
+ * bounds of a scene with any origin.
  */
 [[nodiscard]] glm::dvec3 origin_near(const glm::dvec3 &position_ws, const glm::dvec3 &current,
                                      const scene::Bounds &bounds_ws);

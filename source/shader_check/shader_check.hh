@@ -150,7 +150,7 @@ struct Program {
     std::string path;
   };
   std::string name;
-  /** In any order. Of one stage there may be several for CheckTarget::OpenGl alone. */
+  /** The files, in any order. CheckTarget::OpenGl alone allows several of one stage. */
   std::vector<File> files;
   /** "NAME" or "NAME value", defined in every stage. */
   std::vector<std::string> defines;

@@ -25,7 +25,7 @@ struct ProgramBinding {
   enum class Kind : std::uint8_t {
     UniformBlock,
     StorageBlock,
-    /** With its sampler or without. */
+    /** A texture, with its sampler or without. */
     Texture,
     Image,
     PushConstants,
@@ -49,7 +49,7 @@ struct ProgramBinding {
     std::uint32_t size_bytes = 0;
     /** The arrays of the path and of the type, the outermost first. */
     std::vector<Array> arrays;
-    /** Of a matrix, from one column, or row if it is row-major, to the next; 0: no matrix. */
+    /** Distance of the columns of a matrix, or of its rows if it is row-major; 0: no matrix. */
     std::uint32_t matrix_stride_bytes = 0;
     bool is_row_major = false;
     bool operator==(const Member &) const = default;

@@ -649,7 +649,7 @@ TEST_F(ShadersTest, ReflectOfFilesHasWhatSpirvCrossHasNot)
   EXPECT_EQ(entry_of(pose["members"], "bones[0].is_on")["type"], "bool");
   EXPECT_EQ(entry_of(pose["members"], "flags")["type"], "bvec3[4]");
   EXPECT_EQ(entry_of(pose["members"], "count")["type"], "uint");
-  // By std140: a bone is a vec3 and a bool in a row of 16 bytes.
+  // std140: a bone is a vec3 and a bool in a row of 16 bytes.
   EXPECT_EQ(entry_of(pose["members"], "bones[0].is_on")["arrays"], nlohmann::json({{{"count", 2}, {"stride", 16}}}));
   Lines draws;
   for (const nlohmann::json &binding : program["bindings"]) {

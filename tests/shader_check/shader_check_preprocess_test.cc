@@ -84,7 +84,7 @@ class RandomText {
 
   std::mt19937 random_;
   std::string text_;
-  /** Of each open branch, whether its #else was there. */
+  /** Whether each open branch has had its #else. */
   std::vector<bool> open_;
 };
 

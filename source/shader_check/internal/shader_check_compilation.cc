@@ -41,7 +41,7 @@ bool Compilation::link()
 {
 #if GNOMON_GLSLANG_TREE
   facts.resize(sources.size());
-  // For what reads the trees. Linking sets that of the program.
+  // Reading a tree takes memory from the pool of the thread. Linking sets the pool of the program.
   glslang::TPoolAllocator pool;
   glslang::SetThreadPoolAllocator(&pool);
   for (std::size_t i = 0; i < sources.size(); i++) {

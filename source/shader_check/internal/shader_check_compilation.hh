@@ -34,7 +34,7 @@ struct Compilation {
   };
   /** The sources of the stage of \a source. */
   [[nodiscard]] Range stage_of(std::size_t source) const;
-  /** As GlslangProgram::link(). Call it once, after all sources. */
+  /** Links the sources, as GlslangProgram::link() does. Call it once, after all sources. */
   bool link();
   /** The stage in SPIR-V. Call it after linking, for targets with SPIR-V. */
   const Spirv &spirv(std::size_t stage);

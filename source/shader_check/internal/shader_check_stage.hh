@@ -75,7 +75,7 @@ struct Declaration {
   bool is_no_perspective = false;
   bool is_invariant = false;
   bool is_push_constant = false;
-  /** As in StageVariable and ProgramBinding. Only read_spirv() sets them. */
+  /** The same as in StageVariable and ProgramBinding. Only read_spirv() sets them. */
   int index = 0;
   std::string_view format{};
   std::vector<std::string_view> qualifiers{};

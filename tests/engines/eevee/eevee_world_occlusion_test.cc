@@ -249,7 +249,7 @@ TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheMaskLeaves)
     EXPECT_GT(count, 40);
     return sum / count;
   };
-  // At least 49 probes with 128 rays that have cosines as weights: a deviation of 0.007. The largest error seen is
+  // 49 probes or more with 128 rays each, weighted by cosines, have a deviation of 0.007. The largest error seen is
   // 0.0204.
   EXPECT_NEAR(mean_below(), 0.75, 0.025);
   set_cutoff(0.3F);

@@ -41,7 +41,7 @@ static bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
   return true;
 }
 
-/** Where the objects in the view are tinted and not lit, lists read the tinted lamp alone. */
+/** Whether lists read the light of all lamps. If objects are tinted and not lit, lists read the tinted lamp alone. */
 static bool reads_all_lights(const FrameState &state)
 {
   return !state.settings.has_cascade_tint;

@@ -78,7 +78,7 @@ glm::vec3 quotient_or_one(const glm::vec3 &part, const glm::vec3 &whole)
   return glm::mix(glm::vec3(1.0F), part / glm::max(whole, glm::vec3(1e-30F)), glm::greaterThan(whole, glm::vec3(0.0F)));
 }
 
-/** As many as the variants of rays, so that most probes that are near to each other have different ones. */
+/** The variant of the rays of the probe at \a place. Most probes that are near to each other have different ones. */
 std::size_t variant_of(const std::array<int, 4> &place)
 {
   const int sum = place[1] + 7 * place[2] + 49 * place[3];
@@ -281,7 +281,7 @@ WorldDirections WorldOcclusion::directions() const
       whole += light;
     }
   }
-  // For directions from which light arrives only where no probe is.
+  // Light may arrive from a direction only where no probe is.
   constexpr double least = 0.15;
   for (float &value : importance) {
     value = float(least + (1.0 - least) * double(value) * whole / sum);
@@ -458,7 +458,7 @@ void WorldOcclusion::look(std::span<const SurfacePoint> points, Box &box) const
       const glm::vec3 normal = points[i].normal_ws;
       const glm::dvec3 position(points[i].position_ws);
       const glm::vec3 last(box.count - 1);
-      // As in world_parts.
+      // The shader does the same in world_parts.
       const glm::vec3 place(position / box.edge - place_offset - glm::dvec3(box.first));
       // Points that are left out of the box have no probes of their own.
       if (glm::any(glm::lessThan(place, glm::vec3(-1.0F))) || glm::any(glm::greaterThan(place, last + 1.0F))) {
@@ -467,7 +467,7 @@ void WorldOcclusion::look(std::span<const SurfacePoint> points, Box &box) const
       const glm::vec3 above = glm::clamp(place + 0.2F * normal, glm::vec3(0.0F), last);
       const glm::vec3 low = glm::clamp(glm::floor(above), glm::vec3(0.0F), last - 1.0F);
       const glm::vec3 share = above - low;
-      // Above the rounding of the point.
+      // The rays begin beyond the rounding of the point.
       const float offset =
           float(0.01 * box.edge + 1e-6 * std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}));
       const glm::vec3 start = points[i].position_ws + offset * normal;

@@ -65,7 +65,7 @@ class WorldOcclusion {
     }
   };
   /**
-   * Where a probe of write() is: its level, and its place among all points of the level. They do not depend on the
+   * The place of a probe of write(): its level, and its place among all points of the level. They do not depend on the
    * view, so that a view that moves keeps most of its probes.
    */
   using Place = std::array<int, 4>;
@@ -107,13 +107,14 @@ class WorldOcclusion {
   };
   /** The world of `rays_`. */
   std::shared_ptr<const render_scene::WorldLight> world_;
-  /** By variant of the directions and ray. */
+  /** Indexed by the variant of the directions and the ray. */
   std::vector<Ray> rays_;
-  /** By probe of the scene and ray. The variant of a probe is its index. Empty in pictures of one sample. */
+  /** Indexed by the probe of the scene and the ray. The variant of a probe is its index. Empty in pictures of one
+   * sample. */
   std::vector<RayHit> hits_;
   /** The last probes of write(). Empty in pictures of several samples. */
   std::map<Place, Probe> probes_;
-  /** Of the whole world, in any unit. */
+  /** The light of the whole world, in any unit. */
   Light whole_;
   std::uint64_t rays_traced_ = 0;
 };
