@@ -35,7 +35,7 @@ WorldParts world_parts(Surface surface)
   vec3 last = max(world.probe_count.xyz - 1.0, 0.0);
   // In cells between probes.
   vec3 place = surface.position_ws * world.probe_scale.xyz + world.probe_offset.xyz;
-  vec3 normal = has_probes ? normalize(surface.geometric_normal_ws / world.probe_scale.xyz) : vec3(0.0);
+  vec3 normal = has_probes ? surface.geometric_normal_ws : vec3(0.0);
   // Above the surface, between probes of which some count also if others are in its plane.
   vec3 above = clamp(place + 0.2 * normal, vec3(0.0), last);
   vec3 low = clamp(floor(above), vec3(0.0), max(last - 1.0, 0.0));

@@ -225,7 +225,9 @@ shader_check::Program program_in(ManifestValue &value, const fs::path &folder)
   const ManifestValue files = value.at("files");
   for (ManifestValue &value : files.list()) {
     shader_check::Program::File file = file_in(value, folder);
-    if (std::ranges::find(program.files, file.path, &shader_check::Program::File::path) != program.files.end()) {
+    if (std::ranges::any_of(program.files, [&](const shader_check::Program::File &other) {
+          return other.path == file.path && other.stage == file.stage;
+        })) {
       value.fail("the program has this file twice");
     }
     program.files.push_back(std::move(file));

@@ -183,8 +183,7 @@ struct SourceError : Error {
  * to `shaders/`. A stage includes each file once, so headers need no include guard and cyclic includes end.
  *
  * Lines that no compiler reads are empty, and their includes are not read, where this follows from the macros that the
- * text and \a desc define. A variant needs a tenth of the text of its files, and compilers scan all that they are
- * given.
+ * text and \a desc define: most of the text of eevee's variants.
  *
  * \throws SourceError if an included file does not exist or a stage has no `#version`; Error if the file of a stage
  * does not exist

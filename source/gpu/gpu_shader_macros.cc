@@ -91,6 +91,7 @@ class Condition {
 
 void ShaderMacros::set_defined(std::string_view name, Truth is_defined, Truth is_reached)
 {
+  are_all_unknown_ |= name.empty();
   const Truth before = this->is_defined(name);
   if (is_reached == Truth::Yes || (is_reached == Truth::Unknown && before != is_defined)) {
     defined_.insert_or_assign(std::string(name), is_reached == Truth::Yes ? is_defined : Truth::Unknown);
@@ -99,6 +100,9 @@ void ShaderMacros::set_defined(std::string_view name, Truth is_defined, Truth is
 
 Truth ShaderMacros::is_defined(std::string_view name) const
 {
+  if (are_all_unknown_) {
+    return Truth::Unknown;
+  }
   if (const auto found = defined_.find(name); found != defined_.end()) {
     return found->second;
   }

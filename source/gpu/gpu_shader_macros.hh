@@ -21,7 +21,7 @@ enum class Truth : std::uint8_t { No, Unknown, Yes };
  */
 class ShaderMacros {
  public:
-  /** Follow `#define` or `#undef`, which stands where \a is_reached. */
+  /** Follow `#define` or `#undef`, which stands where \a is_reached. An empty \a name may be any. */
   void set_defined(std::string_view name, Truth is_defined, Truth is_reached);
   /** \a directive: `if`, `ifdef`, `ifndef` or `elif`; \a condition: the rest of its line. */
   [[nodiscard]] Truth holds(std::string_view directive, std::string_view condition) const;
@@ -29,6 +29,7 @@ class ShaderMacros {
 
  private:
   std::map<std::string, Truth, std::less<>> defined_;
+  bool are_all_unknown_ = false;
 };
 
 }  // namespace gnomon::gpu

@@ -10,31 +10,43 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Finds lines that begin outside of comments, as those of directives do. */
-class LineStarts {
+/** Finds directives, which comments may precede. */
+class Directives {
  public:
-  /** \return whether the next \a line begins outside of a comment and does not continue the line before */
-  bool next(std::string_view line)
+  /**
+   * \return the next \a line from the `#` of its directive on; empty if it has none. A line that a comment contains, or
+   * that continues another, has none
+   */
+  std::string_view next(std::string_view line)
   {
-    const bool is_outside = !is_in_comment_ && !is_continued_;
+    std::string_view directive;
+    bool has_text = is_continued_;
     bool is_in_line_comment = is_continued_ && is_in_line_comment_;
-    while (!is_in_line_comment) {
-      const std::size_t at = line.find(is_in_comment_ ? '*' : '/');
-      if (at == std::string_view::npos) {
-        break;
-      }
-      line.remove_prefix(at);
-      if (line.starts_with(is_in_comment_ ? "*/" : "/*")) {
-        is_in_comment_ = !is_in_comment_;
-        line.remove_prefix(2);
+    is_continued_ = line.ends_with('\\');
+    while (!is_in_line_comment && !line.empty()) {
+      if (is_in_comment_) {
+        const std::size_t end = line.find("*/");
+        is_in_comment_ = end == std::string_view::npos;
+        line.remove_prefix(is_in_comment_ ? line.size() : end + 2);
         continue;
       }
-      is_in_line_comment = !is_in_comment_ && line.starts_with("//");
-      line.remove_prefix(1);
+      if (!has_text) {
+        line = TextScanner(line).skip_space().rest();
+        has_text = !line.empty() && !line.starts_with("/*");
+        directive = line.starts_with('#') ? line : std::string_view();
+      }
+      line.remove_prefix(std::min(line.find('/'), line.size()));
+      is_in_comment_ = line.starts_with("/*");
+      is_in_line_comment = line.starts_with("//");
+      line.remove_prefix(std::min<std::size_t>(is_in_comment_ ? 2 : 1, line.size()));
     }
-    is_continued_ = line.ends_with('\\');
     is_in_line_comment_ = is_in_line_comment;
-    return is_outside;
+    return directive;
+  }
+  /** Whether the next line begins in a comment of several lines. */
+  [[nodiscard]] bool is_in_comment() const
+  {
+    return is_in_comment_;
   }
 
  private:
@@ -97,17 +109,27 @@ class Preprocessor {
     // Within a branch that is left out.
     int inner_branches = 0;
     for (std::size_t i = 0; i < lines.size(); i++) {
-      const std::string_view directive = line_starts_.next(lines[i]) ? directive_of(lines[i]) : std::string_view();
+      const std::string_view from_directive = directives_.next(lines[i]);
+      const std::string_view directive = directive_of(from_directive);
+      std::string_view line = lines[i];
       if (!branches_.empty() && branches_.back().holds == Truth::No) {
         const bool is_inner = inner_branches > 0 || is_branch_start(directive);
         inner_branches += is_branch_start(directive) ? 1 : is_inner && directive == "endif" ? -1 : 0;
         if (is_inner || !is_branch_end(directive)) {
-          source_.text += '\n';
+          // A comment that an earlier line of the text begins must end.
+          (source_.text += is_comment_open_ ? line : std::string_view()) += '\n';
+          is_comment_open_ &= directives_.is_in_comment();
           continue;
         }
+        // What is left out began the comment before the directive.
+        line = is_comment_open_ ? line : from_directive;
       }
-      const bool is_position_lost = follow_branch(lines[i], directive, i == guard);
-      append_line(lines[i], directive, path, int(i) + 1, file);
+      is_comment_open_ = directives_.is_in_comment();
+      const bool is_position_lost = follow_branch(from_directive, directive, i == guard);
+      if (directive == "define" || directive == "undef") {
+        macros_.set_defined(argument_of(from_directive), directive == "define" ? Truth::Yes : Truth::No, is_reached());
+      }
+      append_line(line, directive, path, int(i) + 1, file);
       if (is_position_lost) {
         append_position(int(i) + 2, file);
       }
@@ -135,9 +157,6 @@ class Preprocessor {
       append_position(number + 1, file);
     }
     else {
-      if (name == "define" || name == "undef") {
-        macros_.set_defined(argument_of(line), name == "define" ? Truth::Yes : Truth::No, is_reached());
-      }
       (source_.text += name == "pragma" && argument_of(line) == "once" ? std::string_view() : line) += '\n';
     }
   }
@@ -236,7 +255,8 @@ class Preprocessor {
   bool follow_branch(std::string_view line, std::string_view name, bool is_include_guard)
   {
     if (is_branch_start(name)) {
-      const Truth holds = is_include_guard ? Truth::Yes : macros_.holds(name, behind_directive(line).rest());
+      Truth holds = macros_.holds(name, behind_directive(line).rest());
+      holds = is_include_guard && holds == Truth::Unknown ? Truth::Yes : holds;
       branches_.push_back({++branch_count_, holds, holds});
     }
     else if (is_branch_end(name) && !branches_.empty()) {
@@ -291,7 +311,9 @@ class Preprocessor {
   std::vector<std::pair<std::string, std::vector<int>>> included_;
   std::vector<Branch> branches_;
   ShaderMacros macros_;
-  LineStarts line_starts_;
+  Directives directives_;
+  /** Whether `source_.text` ends in a comment. */
+  bool is_comment_open_ = false;
   int branch_count_ = 0;
   bool has_version_ = false;
 };

@@ -160,6 +160,14 @@ TEST(Preprocess, KeepsBranchesThatCompilersDecide)
   }
 }
 
+TEST(Preprocess, AMacroThatIsDefinedOutsideIsNoIncludeGuard)
+{
+  const ShaderTexts texts{
+      {{"main", VERSION + "#include \"lib\"\n"}, {"lib", "#ifndef COUNT\n#define COUNT 4\n#else\nother\n#endif\n"}}};
+  EXPECT_EQ(count_of(preprocessed(texts, {"COUNT 64"}), "other"), 1U);
+  EXPECT_EQ(count_of(preprocessed(texts), "other"), 0U);
+}
+
 TEST(ShaderSource, NamesTheFilesOfALog)
 {
   const ShaderSource source{ShaderStage::Vertex, "", {"main.glsl", "lib.glsl"}};

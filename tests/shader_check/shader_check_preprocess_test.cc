@@ -54,7 +54,7 @@ class RandomText {
   }
   void add_line()
   {
-    switch (below(14)) {
+    switch (below(18)) {
       case 0: text_ += "#ifdef " + name() + (below(2) == 0 ? " // condition\n" : "\n"); break;
       case 1: text_ += "  #ifndef " + name() + "\n"; break;
       case 2: text_ += "# if " + condition(3) + "\n"; break;
@@ -69,6 +69,17 @@ class RandomText {
       case 6: text_ += "#define " + std::string(1, char('A' + below(4))) + " 1\n"; return;
       case 7: text_ += "#undef " + std::string(1, char('A' + below(4))) + "\n"; return;
       case 8: text_ += "/* comment\n#endif\n#ifdef A\n*/ int n = __LINE__; // /*\n"; return;
+      case 10: text_ += "/* a */ /* b */ #define " + std::string(1, char('A' + below(4))) + "\n"; return;
+      case 11: text_ += "/*\n*/ #undef " + std::string(1, char('A' + below(4))) + " // /*\n"; return;
+      case 12: text_ += below(8) == 0 ? "#define \\\nD\n" : "int n = __LINE__; /* a\n*/ int n = __LINE__;\n"; return;
+      case 13:
+        if (!open_.empty()) {
+          open_.pop_back();
+          text_ += "/* a\n*/ #endif /* b\n*/ int n = __LINE__;\n";
+        }
+        return;
+      case 14: add_branch("/* a\n */ #else // b\n", true); return;
+      case 15: add_branch("#else /* a\n */ int n = __LINE__;\n", true); return;
       case 9: text_ += "int n = \\\n__LINE__; // and \\\n#else /*\n"; return;
       default: text_ += "int n = __LINE__;\n"; return;
     }

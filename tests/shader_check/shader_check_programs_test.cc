@@ -391,6 +391,10 @@ TEST(CheckProgram, SeveralShadersOfAStageAreLinked)
     EXPECT_EQ(out.empty(), std::string(message).empty()) << path << to << out;
     EXPECT_NE(out.find(message), std::string::npos) << path << to << out;
   }
+  Texts sizes = right;
+  sizes.at("b.vert") += "uniform float weights[2];\nfloat first() { return weights[0]; }\n";
+  sizes.at("c.vert") += "uniform float weights[3];\nfloat last() { return weights[2]; }\n";
+  EXPECT_NE(messages_of(check_texts(sizes)).find("[link]"), std::string::npos) << messages_of(check_texts(sizes));
   for (const CheckTarget target : {CheckTarget::OpenGlSpirv, CheckTarget::Es, CheckTarget::Vulkan12}) {
     EXPECT_NE(messages_of(check_texts(right, for_target(target)))
                   .find(fmt::format("b.vert:1: error: a.vert has the vertex stage as well. Only OpenGL links several "

@@ -84,7 +84,10 @@ bool is_difference_between_stages(const std::vector<LinkMessage> &errors)
  */
 bool is_about_sizes_of_varyings(const LinkMessage &message)
 {
-  return message.text.find("Array sizes must be compatible: ") != std::string::npos &&
+  const bool is_of_one_stage = std::ranges::any_of(stage_names(), [&](const StageName &stage) {
+    return message.text.find(fmt::format("{0} and {0} stages", stage.text)) != std::string::npos;
+  });
+  return !is_of_one_stage && message.text.find("Array sizes must be compatible: ") != std::string::npos &&
          message.text.find(" earlier stage: ") == std::string::npos;
 }
 

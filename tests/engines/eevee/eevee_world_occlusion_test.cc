@@ -45,12 +45,24 @@ class WorldOcclusionTest : public testing::Test {
   /** The probes around all casters: the view sees none. */
   shared::WorldBlock traced(WorldOcclusion &occlusion)
   {
+    return traced(occlusion, draw::View(glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 1000)), perspective));
+  }
+  shared::WorldBlock traced(WorldOcclusion &occlusion, const draw::View &view)
+  {
     rendered.update();
     occlusion.update(rendered, false);
     shared::WorldBlock block{};
-    occlusion.write(draw::View(glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 1000)), draw::perspective(1, 1, 1, 10)),
-                    block);
+    occlusion.write(view, block);
     return block;
+  }
+  static void expect_same(const shared::WorldBlock &block, const shared::WorldBlock &expected)
+  {
+    EXPECT_EQ(block.probe_count, expected.probe_count);
+    EXPECT_EQ(block.probe_scale, expected.probe_scale);
+    EXPECT_EQ(block.probe_offset, expected.probe_offset);
+    for (int i = 0; i < 2 * WORLD_PROBE_MAX; i++) {
+      EXPECT_EQ(block.probes[i], expected.probes[i]) << i;
+    }
   }
   /** Calls \a visit with the position of each probe, and the parts that arrive there along the axes and against them.
    */
@@ -67,6 +79,7 @@ class WorldOcclusionTest : public testing::Test {
     }
   }
 
+  glm::mat4 perspective = draw::perspective(1, 1, 0.1F, 10);
   scene::Scene scene;
   scene::Handle<scene::Mesh> box = test::add_box_mesh(scene, test::add_material(scene, glm::vec3(1.0F)));
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -220,6 +233,38 @@ TEST_F(WorldOcclusionTest, OfEditsIsThatOfANewScene)
   // The larger scene has 1.5 times as many probes, at other places.
   add_box({0.0, 0.0, 4.0}, {1.0, 1.0, 6.0});
   expect_as_new(2.0);
+}
+
+TEST_F(WorldOcclusionTest, OfViewsInTurnIsThatOfANewOne)
+{
+  add_room();
+  const auto small = add_box({-0.5, 0.5, 1.0}, {0.5, 1.0, 1.5});
+  const auto room_material = scene.meshes()[box].material;
+  const glm::vec3 eye(0.5F, -1.5F, 1.5F);
+  const draw::View first(glm::lookAt(eye, glm::vec3(0, 1, 1), glm::vec3(0, 0, 1)), perspective);
+  const draw::View second(glm::lookAt(eye, glm::vec3(2, 0, 0), glm::vec3(0, 0, 1)), perspective);
+  WorldOcclusion kept;
+  const auto expect_as_new = [&](const char *after) {
+    SCOPED_TRACE(after);
+    for (const draw::View &view : {first, second, first}) {
+      WorldOcclusion made;
+      expect_same(traced(kept, view), traced(made, view));
+    }
+  };
+  expect_as_new("nothing");
+  EXPECT_NE(traced(kept, first).probe_offset, traced(kept, second).probe_offset);
+  scene.set_transform(small, placed({-1.0, 0.0, 2.0}, {0.0, 0.5, 2.5}));
+  expect_as_new("a move");
+  scene.edit(small, [](scene::Node &node) { node.is_visible = false; });
+  expect_as_new("hiding a box");
+  scene.edit(small, [](scene::Node &node) { node.is_visible = true; });
+  // The camera is within the box, of which it then sees no side.
+  scene.set_transform(small, placed({-0.5, -1.7, 1.0}, {0.7, 1.5, 1.9}));
+  expect_as_new("a move around the camera");
+  for (const bool is_double_sided : {true, false}) {
+    scene.edit(room_material, [&](scene::Material &value) { value.is_double_sided = is_double_sided; });
+    expect_as_new("sides of a material");
+  }
 }
 
 TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheMaskLeaves)

@@ -197,12 +197,14 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
       MeshKey mesh;
       double cover;
       glm::mat4 world_from_object;
-    } print{key, cover_of(content, mesh, covers), scene.objects().world_from_object(i)};
+      // The bytes of an integer without padding are hashed.
+      std::uint64_t is_double_sided;
+    } print{key, cover_of(content, mesh, covers), scene.objects().world_from_object(i),
+            std::uint64_t(content.material_of(mesh).is_double_sided)};
     casters_.push_back({.bounds_ws = scene.object(i).bounds,
                         .object = i,
                         .fingerprint = fingerprint_of(std::as_bytes(std::span(&print, 1)))});
-    instances_.push_back(
-        {tree.get(), glm::inverse(print.world_from_object), print.cover, content.material_of(mesh).is_double_sided});
+    instances_.push_back({tree.get(), glm::inverse(print.world_from_object), print.cover, print.is_double_sided != 0});
     boxes.push_back(scene.object(i).bounds);
   }
   tree_ = BoxTree(boxes);

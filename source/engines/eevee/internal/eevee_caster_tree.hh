@@ -76,8 +76,8 @@ class CasterTree {
   std::vector<scene::Bounds> update(const render_scene::RenderScene &scene);
   /**
    * Both sides of all triangles block a ray. \a direction_ws: of any length but 0. \a is_nearest: return the side of
-   * the nearest triangle; otherwise of any, which takes less time. \a t_max: end of the ray, in directions. May be
-   * called by several threads.
+   * the nearest triangle; otherwise of any, which takes less time. \a t_max: end of the ray, in lengths of \a
+   * direction_ws. May be called by several threads.
    */
   [[nodiscard]] RayHit trace(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws, bool is_nearest,
                              float t_max = std::numeric_limits<float>::max()) const;

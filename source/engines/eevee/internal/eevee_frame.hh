@@ -103,7 +103,10 @@ struct FrameRead {
   {
   }
   std::string_view name;
-  /** Lists bind all of a group or none, as programs without lighting. Empty: each list that draws binds it. */
+  /**
+   * A list binds all reads of a group or none of them: programs without lighting bind none. Empty: each list that draws
+   * binds it.
+   */
   std::string_view group;
   /** The condition under which lists bind it. Empty: always. */
   std::function<bool(const FrameState &)> when;

@@ -38,7 +38,10 @@ class SceneWorld {
    */
   void update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings,
                     const RestDirections &rest);
-  /** In pictures of one sample, write the light that arrives at the surfaces that \a view sees. \pre update_light */
+  /**
+   * Write the light that arrives at the surfaces that \a view sees. Only pictures of one sample have it.
+   * \pre update_light
+   */
   void follow(const draw::View &view, gpu::Device &device);
   /** Create the picture of the background if it is shown and changed; free it if it is not shown. */
   void update_picture(const render_scene::RenderScene &scene, const Settings &settings);

@@ -22,7 +22,8 @@ namespace {
 
 /** The first rays of a probe of the scene, which find surfaces that face it. */
 constexpr int body_rays = 32;
-/** Places of probes of write() from the multiples of their distance: surfaces are often there. */
+/** Offset of the probes of write() from the multiples of their distance, in distances. Surfaces are often at multiples.
+ */
 constexpr double place_offset = 0.4142;
 /** Levels of write() from a distance of probes to twice that distance. */
 constexpr double levels_per_octave = 8.0;
@@ -298,6 +299,12 @@ WorldDirections WorldOcclusion::directions() const
 bool WorldOcclusion::update(const render_scene::RenderScene &scene, bool is_sampled)
 {
   const std::vector<scene::Bounds> changed = casters_.update(scene);
+  update_count_++;
+  if (!changed.empty()) {
+    // Viewports that draw the scene in turn update it for each.
+    constexpr std::uint64_t recent = 8;
+    std::erase_if(probes_, [&](const auto &entry) { return entry.second.used + recent < update_count_; });
+  }
   const scene::Bounds bounds_ws = scene.bounds();
   if (casters_.empty()) {
     const bool has_blocked = probe_count() > 0;
@@ -385,6 +392,10 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
     low[axis] = double(places[left_out]);
     high[axis] = double(places[places.size() - 1 - left_out]);
   }
+  // Bounds of far scenes may be infinite.
+  constexpr double far = 1e18;
+  low = glm::clamp(low, -far, far);
+  high = glm::clamp(high, -far, far);
   const auto largest = [](const glm::dvec3 &v) { return std::max({v.x, v.y, v.z}); };
   const double magnitude = largest(glm::max(glm::abs(low), glm::abs(high)));
   const double edge_min = std::max({largest(high - low) / WORLD_PROBE_MAX, 1e-6 * magnitude, 1e-18});
@@ -418,6 +429,9 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
         box.probes.push_back(found ? &probes.insert(std::move(found)).position->second : &probes[places.back()]);
       }
     }
+  }
+  for (Probe *probe : box.probes) {
+    probe->used = update_count_;
   }
   // Those of other views, which other viewports have, or to which a camera may return.
   constexpr std::size_t kept_max = std::size_t(16) * WORLD_PROBE_MAX;
@@ -458,7 +472,7 @@ void WorldOcclusion::look(std::span<const SurfacePoint> points, Box &box) const
       const glm::vec3 normal = points[i].normal_ws;
       const glm::dvec3 position(points[i].position_ws);
       const glm::vec3 last(box.count - 1);
-      // The shader does the same in world_parts.
+      // The shader has the same place in world_parts, and takes the outermost probes outside of the box.
       const glm::vec3 place(position / box.edge - place_offset - glm::dvec3(box.first));
       // Points that are left out of the box have no probes of their own.
       if (glm::any(glm::lessThan(place, glm::vec3(-1.0F))) || glm::any(glm::greaterThan(place, last + 1.0F))) {

@@ -46,7 +46,7 @@ class WorldOcclusion {
   {
     return count_.x * count_.y * count_.z;
   }
-  /** Number of rays that were traced, since the start. */
+  /** Number of rays of probes that were traced, since the start. */
   [[nodiscard]] std::uint64_t rays_traced() const
   {
     return rays_traced_;
@@ -76,6 +76,8 @@ class WorldOcclusion {
     /** `hits` and `parts` are up to date. */
     bool is_traced = false;
     bool is_lit = false;
+    /** `update_count_` of the last write(). */
+    std::uint64_t used = 0;
   };
   /** The probes of a box, by index, and what its surfaces see of them. */
   struct Box;
@@ -117,6 +119,7 @@ class WorldOcclusion {
   /** The light of the whole world, in any unit. */
   Light whole_;
   std::uint64_t rays_traced_ = 0;
+  std::uint64_t update_count_ = 0;
 };
 
 }  // namespace gnomon::eevee
