@@ -146,7 +146,7 @@ TEST(Preprocess, LeavesOutBranchesThatNoCompilerReads)
   const std::string with = preprocessed(texts, {"PLAIN"});
   EXPECT_EQ(count_of(with, "library"), 1U);
   EXPECT_EQ(count_of(with, "skipped"), 0U);
-  expect_contains(with, "#else\n\n#endif\n");
+  expect_contains(with, "#else\n#line 7 0\n\n#endif\n");
   const std::string without =
       preprocessed({{{"main", VERSION + "#ifdef PLAIN\n#include \"lost\"\n#else\nkept\n#endif\n"}}});
   expect_contains(without, "#ifdef PLAIN\n\n#else\nkept\n#endif\n");
@@ -158,6 +158,16 @@ TEST(Preprocess, KeepsBranchesThatCompilersDecide)
                                 "#if !defined(A) && COUNT > 2", "#ifdef A B"}) {
     expect_contains(preprocessed({{{"main", VERSION + condition + "\nkept\n#endif\n"}}}), "kept");
   }
+}
+
+// glslang does not see these where it skips a branch.
+TEST(Preprocess, CommentsMayPrecedeTheEndOfABranchThatIsLeftOut)
+{
+  const std::string text =
+      preprocessed({{{"main", VERSION + "#ifdef OFF\nskipped /* b\n*/ #endif /* c\n*/ kept\n/* d */ #define ON\n" +
+                                  "#ifdef ON\nread\n#else\nskipped\n#endif\n"}}});
+  expect_contains(text, "#ifdef OFF\n\n#endif /* c\n*/ kept\n");
+  expect_contains(text, "#ifdef ON\nread\n#else\n\n#endif\n");
 }
 
 TEST(Preprocess, AMacroThatIsDefinedOutsideIsNoIncludeGuard)

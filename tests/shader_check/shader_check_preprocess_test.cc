@@ -14,7 +14,8 @@ namespace {
 using test::ShaderTexts;
 using test::VERSION;
 
-/** Random directives, comments and continued lines. Each other line says its number, unless a branch leaves it out. */
+/** Random directives, comments and continued lines, but no comments around directives that branch, which glslang
+ * miscounts. Each other line says its number, unless a branch leaves it out. */
 class RandomText {
  public:
   explicit RandomText(unsigned seed) : random_(seed) {}
@@ -54,7 +55,7 @@ class RandomText {
   }
   void add_line()
   {
-    switch (below(18)) {
+    switch (below(15)) {
       case 0: text_ += "#ifdef " + name() + (below(2) == 0 ? " // condition\n" : "\n"); break;
       case 1: text_ += "  #ifndef " + name() + "\n"; break;
       case 2: text_ += "# if " + condition(3) + "\n"; break;
@@ -69,18 +70,10 @@ class RandomText {
       case 6: text_ += "#define " + std::string(1, char('A' + below(4))) + " 1\n"; return;
       case 7: text_ += "#undef " + std::string(1, char('A' + below(4))) + "\n"; return;
       case 8: text_ += "/* comment\n#endif\n#ifdef A\n*/ int n = __LINE__; // /*\n"; return;
-      case 10: text_ += "/* a */ /* b */ #define " + std::string(1, char('A' + below(4))) + "\n"; return;
-      case 11: text_ += "/*\n*/ #undef " + std::string(1, char('A' + below(4))) + " // /*\n"; return;
-      case 12: text_ += below(8) == 0 ? "#define \\\nD\n" : "int n = __LINE__; /* a\n*/ int n = __LINE__;\n"; return;
-      case 13:
-        if (!open_.empty()) {
-          open_.pop_back();
-          text_ += "/* a\n*/ #endif /* b\n*/ int n = __LINE__;\n";
-        }
-        return;
-      case 14: add_branch("/* a\n */ #else // b\n", true); return;
-      case 15: add_branch("#else /* a\n */ int n = __LINE__;\n", true); return;
-      case 9: text_ += "int n = \\\n__LINE__; // and \\\n#else /*\n"; return;
+      case 9: text_ += "/* a */ /* b */ #define " + std::string(1, char('A' + below(4))) + "\n"; return;
+      case 10: text_ += "/*\n*/ #undef " + std::string(1, char('A' + below(4))) + " // /*\n"; return;
+      case 11: text_ += below(8) == 0 ? "#define \\\nD\n" : "int n = __LINE__; /* a\n*/ int n = __LINE__;\n"; return;
+      case 12: text_ += "int n = \\\n__LINE__; // and \\\n#else /*\n"; return;
       default: text_ += "int n = __LINE__;\n"; return;
     }
     open_.push_back(false);
