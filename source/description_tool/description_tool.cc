@@ -161,7 +161,7 @@ std::string list_text(const std::vector<std::string> &names)
   return fmt::format("{}", fmt::join(items, ", "));
 }
 
-/** What the steps read of each other, as a graph of Mermaid. */
+/** A graph of Mermaid: an arrow goes from each step to those that read its output. */
 void print_graph(const std::vector<eevee::StepDescription> &steps)
 {
   // The names that each arrow has. An arrow is dotted if its second step draws over what the first wrote.

@@ -121,7 +121,7 @@ class Preprocessor {
           is_comment_open_ &= directives_.is_in_comment();
           continue;
         }
-        // What is left out began the comment before the directive.
+        // The comment before the directive began in lines that are left out.
         line = is_comment_open_ ? line : from_directive;
       }
       is_comment_open_ = directives_.is_in_comment();

@@ -92,7 +92,7 @@ class RandomText {
   std::vector<bool> open_;
 };
 
-/** What glslang reads of a vertex shader: its lines that are not empty. */
+/** The lines of a vertex shader that glslang reads, without those that are empty. */
 std::string read_by_glslang(gpu::ShaderSource text, CheckTarget target)
 {
   StageSource source(std::move(text));

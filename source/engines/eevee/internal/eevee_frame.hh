@@ -127,7 +127,7 @@ struct FrameStep {
   /** Decides whether the step is drawn. Called before each sample or target. */
   std::function<Need(const FrameState &)> need;
   /**
-   * What the step reads, and the names of textures and buffers that it writes. "target" stands for the attachments of
+   * The reads of the step, and the names of textures and buffers that it writes. "target" stands for the attachments of
    * the draw's target. Builds with assertions check both lists. \see FrameCheck
    */
   std::vector<FrameRead> reads{};
