@@ -203,6 +203,8 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
   int steps = clamp(int(ceil(length_px / step_px)), 1, step_max);
   // Metres along the view axis: perspective scale / (z - z of infinity), orthographic z / change of z in a metre.
   float scale = from.z - ahead.z * from.w;
+  // A distance at which a perspective picture is as high as an orthographic one.
+  float parallel_m = 2.5 / length(vec3(view.clip_from_world[0].y, view.clip_from_world[1].y, view.clip_from_world[2].y));
   float last = 0.0;
   // The gap is the depth of the ray less that of the surface in the picture; a negative gap puts the ray behind the surface. Both depths are
   // linear over the picture if the surface is a plane.
@@ -239,8 +241,9 @@ PictureHit march_behind(Ray ray, float length_m, float offset)
     vec4 depths = vec4(path.start.z + vec2(high, low) * path.way.z, seen_at(path, high), seen_at(path, high + pixel));
     vec4 depths_m = is_perspective ? scale / max(depths - ahead.z, vec4(1e-20)) : depths / ahead.z;
     // A ray that is farther behind passes behind the body that is seen there. A surface changes its depth within a pixel.
-    float margin_m = 0.002 * (is_perspective ? depths_m.z : 0.1 / abs(ahead.z)) + 2.0 * abs(depths_m.x - depths_m.y);
-    float slope_m = depths.w > 0.0 ? 1.5 * min(abs(depths_m.w - depths_m.z), 0.015 * depths_m.z) : 0.0;
+    float size_m = is_perspective ? depths_m.z : parallel_m;
+    float margin_m = 0.002 * size_m + 2.0 * abs(depths_m.x - depths_m.y);
+    float slope_m = depths.w > 0.0 ? 1.5 * min(abs(depths_m.w - depths_m.z), 0.015 * size_m) : 0.0;
     bool is_met = hidden_m == NO_HIT && abs(depths_m.x - depths_m.z) <= margin_m + slope_m;
     // This surface is farther than the place where the ray was hidden. The ray met the surface before that place.
     if (is_met || depths_m.z > hidden_m) {

@@ -42,18 +42,18 @@ WorldParts world_parts(Surface surface)
   vec3 share = above - low;
   ivec3 stride = 2 * ivec3(1, int(world.probe_count.x), int(world.probe_count.x * world.probe_count.y));
   int first = int(low.x) * stride.x + int(low.y) * stride.y + int(low.z) * stride.z;
-  const float unknown = 1e-6;
-  WorldParts sum = WorldParts(vec3(unknown * world.probe_count.w), vec3(unknown * world.probe_count.w));
-  float weights = unknown;
+  // Without probes, all light arrives.
+  const float whole = 1e-12;
+  WorldParts sum = WorldParts(vec3(whole), vec3(whole));
+  float weights = whole;
   int corner = has_probes ? 0 : 7;
   // The test is at the end as in lights_radiance.
   do {
     ivec3 side = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
     vec3 near = mix(1.0 - share, share, vec3(side));
     int probe = has_probes ? first + side.x * stride.x + side.y * stride.y + side.z * stride.z : 0;
-    // Probes below the plane of the surface are behind a wall, or see the body block light that the surface has not lost.
     float height = dot(normal, low + vec3(side) - place);
-    float weight = near.x * near.y * near.z * clamp(8.0 * height, 0.0, 1.0) * world.probes[probe].w;
+    float weight = near.x * near.y * near.z * world_probe_weight(height) * world.probes[probe].w;
     sum.positive += weight * world.probes[probe].xyz;
     sum.negative += weight * world.probes[probe + 1].xyz;
     weights += weight;

@@ -49,7 +49,7 @@ struct WorldBlock {
   int sun_count;
   /** WORLD_SUN_POINTS for each sun. They draw highlights that are too narrow for the one direction of a sun in a sample. */
   WorldSunPoint sun_points[WORLD_SUN_MAX * WORLD_SUN_POINTS];
-  /** xyz: probes along each axis. 0: nothing blocks the light. w: square root of the arriving part where no probe counts. */
+  /** xyz: probes along each axis. 0: nothing blocks the light. */
   vec4 probe_count;
   /** xyz: the place of a position among the probes along each axis is position * scale + offset. */
   vec4 probe_scale;
@@ -82,6 +82,15 @@ SHARED_FUNCTION vec3 world_irradiance(WorldBlock world, vec3 n)
 SHARED_FUNCTION float world_mirror_reach_sq(float solid_angle)
 {
   return min(WORLD_MIRROR_DIRECTIONS * INV_PI * solid_angle, 1.0f);
+}
+
+/**
+ * Weight of a probe for a surface. \a height: of the probe above the plane of the surface, in cells. A probe below the plane is behind a
+ * wall, or sees the body block light that the surface has not lost: its light matters only where all probes are below.
+ */
+SHARED_FUNCTION float world_probe_weight(float height)
+{
+  return min(max(2.0f * height, 0.02f), 1.0f);
 }
 
 /**

@@ -5,6 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+#include <vector>
+
 /** Tests use the scenes of source/measure. */
 namespace gnomon::test {
 
@@ -27,6 +34,31 @@ inline void remove_objects(scene::Scene &scene)
   for (auto object = objects.rbegin(); object != objects.rend(); ++object) {
     scene.remove(object->node);
   }
+}
+
+/** A sphere of radius 1 with its normals. */
+inline scene::Handle<scene::Mesh> add_sphere_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
+{
+  constexpr int columns = 128;
+  constexpr int rows = 64;
+  scene::Mesh mesh;
+  for (int y = 0; y <= rows; y++) {
+    for (int x = 0; x <= columns; x++) {
+      const double polar = std::numbers::pi * y / rows;
+      const double azimuth = 2.0 * std::numbers::pi * x / columns;
+      mesh.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                                  std::cos(polar));
+      if (x < columns && y < rows) {
+        const auto first = std::uint32_t(y * (columns + 1) + x);
+        for (const std::uint32_t i : {0U, columns + 1U, columns + 2U, 0U, columns + 2U, 1U}) {
+          mesh.indices.push_back(first + i);
+        }
+      }
+    }
+  }
+  mesh.normals = mesh.positions;
+  mesh.material = material;
+  return scene.add(std::move(mesh));
 }
 
 /** Edits material number \a index of \a scene. */

@@ -223,31 +223,6 @@ TEST_F(TransmissionGpuTest, ASurfaceFunctionsRoughnessBlursAsTheMaterialsDoes)
   EXPECT_LE(largest_difference(rough, picture_with(0.7F, "result.base_color *= 1.0;")), 1e-5);
 }
 
-/** A sphere of radius 1 with its normals. */
-scene::Handle<scene::Mesh> add_sphere_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
-{
-  constexpr int columns = 128;
-  constexpr int rows = 64;
-  scene::Mesh mesh;
-  for (int y = 0; y <= rows; y++) {
-    for (int x = 0; x <= columns; x++) {
-      const double polar = std::numbers::pi * y / rows;
-      const double azimuth = 2.0 * std::numbers::pi * x / columns;
-      mesh.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
-                                  std::cos(polar));
-      if (x < columns && y < rows) {
-        const auto first = std::uint32_t(y * (columns + 1) + x);
-        for (const std::uint32_t i : {0U, columns + 1U, columns + 2U, 0U, columns + 2U, 1U}) {
-          mesh.indices.push_back(first + i);
-        }
-      }
-    }
-  }
-  mesh.normals = mesh.positions;
-  mesh.material = material;
-  return scene.add(std::move(mesh));
-}
-
 /** The direction behind a sphere of radius 1 around the origin, by Snell's law; with the ray's own for an index of 1.
  */
 glm::dvec3 behind_sphere(const glm::dvec3 &eye, const glm::dvec3 &ray, double ior)
@@ -272,7 +247,7 @@ TEST_F(TransmissionGpuTest, ASphereRefractsAtBothOfItsSurfaces)
   }
   scene.set_world(scene::World{.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))});
   test::remove_objects(scene);
-  test::add_object(scene, add_sphere_mesh(scene, glass), glm::dmat4(1));
+  test::add_object(scene, test::add_sphere_mesh(scene, glass), glm::dmat4(1));
   Settings settings;
   settings.background.kind = Background::Kind::World;
   camera = test::camera_at({1, -2, 5}, {0, 0, 0}, 0.42F);
@@ -337,7 +312,7 @@ class TwoBodiesGpuTest : public TransmissionGpuTest {
       value.ior = 1.5F;
       value.thickness = 1.0F;
     });
-    mesh = add_sphere_mesh(scene, glass);
+    mesh = test::add_sphere_mesh(scene, glass);
     body = test::add_object(scene, mesh, at_height(2.0, glm::dvec3(0.7)));
     behind = test::add_object(scene, mesh, at_height(0.5, glm::dvec3(0.4)));
   }
@@ -345,6 +320,17 @@ class TwoBodiesGpuTest : public TransmissionGpuTest {
   scene::Handle<scene::Node> body;
   scene::Handle<scene::Node> behind;
 };
+
+TEST_F(TwoBodiesGpuTest, ParallelRaysMeetTheGroundWithAnyClipEnd)
+{
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = camera.half_height = 1.5F;
+  camera.clip_end = 20.0F;
+  const Picture near = render({.sample_count = 4});
+  camera.clip_end = 1000.0F;
+  // Rounding of the depths.
+  EXPECT_LT(largest_difference(render({.sample_count = 4}), near), 0.01);
+}
 
 TEST_F(TwoBodiesGpuTest, EditedBodiesAreTracedAsTheyAre)
 {

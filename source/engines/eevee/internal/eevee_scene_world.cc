@@ -150,7 +150,6 @@ void SceneWorld::write_block(const render_scene::RenderScene &scene)
   block.sample_count = key_.sample_count > 1 ? key_.sample_count : 0;
   const double lobe_share = world_lobe_directions / (double(std::max(directions_.count, 1)) * key_.sample_count);
   block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
-  block.probe_count.w = 1.0F;
   is_block_written_ = true;
   view_.reset();
   scene.device().update(block_, block);
@@ -162,7 +161,6 @@ void SceneWorld::follow(const draw::View &view, gpu::Device &device)
     return;
   }
   shared::WorldBlock block{};
-  block.probe_count.w = 1.0F;
   occlusion_->write(view, block);
   constexpr std::size_t first = offsetof(shared::WorldBlock, probe_count);
   device.update(block_, first, std::as_bytes(std::span(&block, 1)).subspan(first));

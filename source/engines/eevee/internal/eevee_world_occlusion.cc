@@ -379,33 +379,45 @@ std::vector<SurfacePoint> WorldOcclusion::seen_points(const draw::View &view) co
 
 WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> points)
 {
-  glm::dvec3 low(bounds_ws_.min);
-  glm::dvec3 high(bounds_ws_.max);
-  for (int axis = 0; axis < 3 && !points.empty(); axis++) {
-    std::vector<float> places;
-    for (const SurfacePoint &point : points) {
-      places.push_back(point.position_ws[axis]);
-    }
-    std::ranges::sort(places);
-    // A few points, such as those seen through a window, do not make the probes of all others sparse.
-    const std::size_t left_out = places.size() / 32;
-    low[axis] = double(places[left_out]);
-    high[axis] = double(places[places.size() - 1 - left_out]);
-  }
   // Bounds of far scenes may be infinite.
   constexpr double far = 1e18;
-  low = glm::clamp(low, -far, far);
-  high = glm::clamp(high, -far, far);
+  glm::dvec3 low = glm::clamp(glm::dvec3(bounds_ws_.min), -far, far);
+  glm::dvec3 high = glm::clamp(glm::dvec3(bounds_ws_.max), -far, far);
+  // Sets low and high to the places that need probes at distances of edge.
+  const auto extend = [&](double edge) {
+    for (int axis = 0; axis < 3 && !points.empty(); axis++) {
+      std::vector<double> lows;
+      std::vector<double> highs;
+      for (const SurfacePoint &point : points) {
+        const auto place = double(point.position_ws[axis]);
+        // Probes are at most 0.75 edge within these ends. A surface that faces out of the box needs one outside.
+        const double outward = std::clamp(3.0 * double(point.normal_ws[axis]), -0.75, 0.75);
+        constexpr double margin = 0.25;
+        lows.push_back(place - edge * (margin + std::max(-outward, 0.0)));
+        highs.push_back(place + edge * (margin + std::max(outward, 0.0)));
+      }
+      // A few points, such as those seen through a window, do not make the probes of all others sparse.
+      const auto left_out = std::ptrdiff_t(points.size() / 32);
+      std::ranges::nth_element(lows, lows.begin() + left_out);
+      std::ranges::nth_element(highs, highs.end() - 1 - left_out);
+      low[axis] = *(lows.begin() + left_out);
+      high[axis] = *(highs.end() - 1 - left_out);
+    }
+  };
+  extend(0.0);
   const auto largest = [](const glm::dvec3 &v) { return std::max({v.x, v.y, v.z}); };
   const double magnitude = largest(glm::max(glm::abs(low), glm::abs(high)));
-  const double edge_min = std::max({largest(high - low) / WORLD_PROBE_MAX, 1e-6 * magnitude, 1e-18});
+  const glm::dvec3 size = high - low;
+  // An axis has at least two probes, and size / (1.25 edge). Smaller edges need more probes than there are.
+  const double edge_min = std::max({std::cbrt(size.x * size.y * size.z / WORLD_PROBE_MAX) / 1.25,
+                                    4.0 * largest(size) / WORLD_PROBE_MAX / 1.25, 1e-6 * magnitude, 1e-18});
   Box box;
   int level = int(std::ceil(levels_per_octave * std::log2(edge_min)));
   for (;; level++) {
     box.edge = edge_of(level);
-    constexpr double margin = 0.25;
-    box.first = glm::ivec3(glm::ceil(low / box.edge - place_offset - margin));
-    glm::ivec3 last(glm::floor(high / box.edge - place_offset + margin));
+    extend(box.edge);
+    box.first = glm::ivec3(glm::ceil(low / box.edge - place_offset));
+    glm::ivec3 last(glm::floor(high / box.edge - place_offset));
     for (int axis = 0; axis < 3; axis++) {
       // A plane has probes at both of its sides.
       if (last[axis] <= box.first[axis]) {
@@ -489,8 +501,8 @@ void WorldOcclusion::look(std::span<const SurfacePoint> points, Box &box) const
         const glm::ivec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
         const glm::vec3 near = glm::mix(1.0F - share, share, glm::vec3(side));
         const float height = glm::dot(normal, low + glm::vec3(side) - place);
-        const float weight = near.x * near.y * near.z * std::clamp(8.0F * height, 0.0F, 1.0F);
-        if (weight > 0.0F) {
+        const float weight = near.x * near.y * near.z * shared::world_probe_weight(height);
+        if (weight > 0.0F && height > 0.0F) {
           const glm::ivec3 at = glm::ivec3(low) + side;
           const glm::vec3 along = glm::vec3(box.position_ws(at)) - start;
           looks[i * corners + corner] = {box.index(at), weight,
@@ -521,17 +533,13 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
   constexpr float unseen_weight = 1e-2F;
   constexpr double seen_least = 0.05;
   std::vector<Weighted> probes(box.probes.size());
-  float most = 0.0F;
   for (std::size_t i = 0; i < probes.size(); i++) {
     const Box::Sight &sight = box.sights[i];
     const float seen = points.empty()                           ? 1.0F
                        : sight.seen > seen_least * sight.looked ? float(sight.seen / sight.looked)
                                                                 : 0.0F;
     if (seen > 0.0F) {
-      const Light &parts = box.probes[i]->parts;
-      probes[i] = {parts, seen};
-      const glm::vec3 larger = glm::max(parts.positive, parts.negative);
-      most = std::max({most, larger.x, larger.y, larger.z});
+      probes[i] = {box.probes[i]->parts, seen};
     }
   }
   const bool has_seen = std::ranges::any_of(probes, [](const Weighted &probe) { return probe.weight > 0.0F; });
@@ -558,8 +566,7 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
       }
     }
   }
-  // A convex body alone has all light where no probe is above its plane, and blocks some from each probe.
-  block.probe_count = glm::vec4(count_, has_seen ? std::sqrt(std::min(1.25F * most, 1.0F)) : 1.0F);
+  block.probe_count = glm::vec4(count_, 0.0F);
   block.probe_scale = glm::vec4(glm::vec3(float(1.0 / box.edge)), 0.0F);
   block.probe_offset = glm::vec4(glm::vec3(-glm::dvec3(box.first) - place_offset), 0.0F);
   block.whole_positive = glm::vec4(whole_.positive, 0.0F);
