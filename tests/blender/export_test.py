@@ -371,9 +371,15 @@ class Objects(ExportTest):
     def test_colours_of_corners(self):
         stuff = material()
         tree = stuff.node_tree
-        tree.links.new(tree.nodes.new('ShaderNodeVertexColor').outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        node = tree.nodes.new('ShaderNodeVertexColor')
+        node.layer_name = 'Col'
+        tree.links.new(node.outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
         box = add_box('box', stuff=stuff)
-        colors = box.data.color_attributes.new('Col', 'FLOAT_COLOR', 'CORNER').data
+        # The material does not read the colours for renders.
+        box.data.color_attributes.new('Other', 'FLOAT_COLOR', 'CORNER')
+        box.data.color_attributes.new('Col', 'FLOAT_COLOR', 'CORNER')
+        box.data.color_attributes.render_color_index = 0
+        colors = box.data.color_attributes['Col'].data
         for polygon in box.data.polygons:
             for corner in polygon.loop_indices:
                 colors[corner].color = (*(0.5 + 0.5 * x for x in polygon.normal), 1)
@@ -382,6 +388,7 @@ class Objects(ExportTest):
         normals, found = file.values(attributes['NORMAL']), file.values(attributes['COLOR_0'])[:, :3]
         expected = 0.5 + 0.5 * normals[:, [0, 2, 1]] * (1, -1, 1)
         self.assertLess(abs(found - expected).max(), 1e-6)
+        self.assertEqual(box.data.color_attributes.render_color_index, 0)
 
     def test_instances_of_particles_are_written(self):
         box = add_box()

@@ -116,6 +116,7 @@ class Export:
         self.show_as_rendered()
         self.find_instances()
         self.fill_slots()
+        self.choose_colors()
         if bpy.app.version < (3, 5):
             self.read_colors_by_corner()
         self.choose_options()
@@ -267,6 +268,16 @@ class Export:
         self.nothing = self.temporary.add_material() if meshes else None
         for mesh in meshes:
             self.temporary.fill_slots(mesh, self.nothing)
+
+    def choose_colors(self):
+        """The exporter writes the colours for renders, whichever a material reads."""
+        for mesh in (each for each in bpy.data.meshes if each.library is None and each.color_attributes):
+            nodes = [node for each in mesh.materials if materials.uses_color_attribute(each) for node in each.node_tree.nodes]
+            found = list(dict.fromkeys(name for node in nodes if (name := materials.color_name(node)) and name in mesh.color_attributes))
+            if found:
+                self.temporary.set(mesh.color_attributes, 'render_color_index', mesh.color_attributes.find(found[0]))
+            if len(found) > 1:
+                self.report.add(f"mesh '{mesh.name}'", f"of its colours '{found[0]}' are written, and not {', '.join(found[1:])}")
 
     def read_colors_by_corner(self):
         """The exporter of 3.4 takes the numbers of vertices for those of corners."""
