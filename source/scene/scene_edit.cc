@@ -9,6 +9,7 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -29,7 +30,7 @@ void check(const Mesh &mesh)
 {
   if (mesh.host_shape) {
     const Bounds &bounds = mesh.host_shape->bounds;
-    if (!is_finite(bounds.min) || !is_finite(bounds.max) || !glm::all(glm::lessThanEqual(bounds.min, bounds.max))) {
+    if (first_infinite(std::array{bounds.min, bounds.max}) || !glm::all(glm::lessThanEqual(bounds.min, bounds.max))) {
       refuse("mesh", mesh.name, "the bounds of its shape in the host's buffers are empty or not finite");
     }
     if (!mesh.positions.empty() || !mesh.indices.empty()) {
