@@ -38,7 +38,8 @@ vec2 mask_offset_px(vec2 across, vec2 up)
  * probability that the texture's levels above 0 store, the covered share. Elsewhere, such as at the edge of a shape that is larger than
  * the pixel, the mask at the pixel's middle decides, which has half of the error and the right mean (\see mask_offset_px). A mask is
  * uniform if its shares over 1 pixel, over 4 and over the distance between samples are alike, or if those over 4, 8 and 16 pixels are
- * equal: a weight that varied with the mask's own pattern within a pixel would change the mean.
+ * equal: a weight that varied with the mask's own pattern within a pixel would change the mean. The shares are those of texels that are
+ * covered by the material's factor alone: where the alpha of vertices is smaller, others are covered, and each pixel's middle decides.
  */
 bool is_pixel_cut_out(float mask_cutoff)
 {
@@ -63,7 +64,8 @@ bool is_pixel_cut_out(float mask_cutoff)
   vec2 offset_px = is_small ? mask_offset_px(across, up) * clamp(12.0 * (level - 0.87), 0.0, 1.0) : vec2(0.0);
   vec2 place_uv = surface_uv + (offset_px.x * across + offset_px.y * up) / texels;
   bool is_open = factor * textureLod(base_color_texture, place_uv, 0.0).a < mask_cutoff;
-  if (!is_small || factor < mask_cutoff) {
+  // Colours of vertices are often stored in bytes, and those that are interpolated between ones are ones but for their rounding.
+  if (!is_small || factor < 1.0 - 1.0 / 256.0) {
     return is_open;
   }
   // The image itself, of level 0, has colors of texels that are cut out.

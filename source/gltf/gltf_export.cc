@@ -441,9 +441,12 @@ void export_gltf(const Scene &scene, const std::filesystem::path &path)
 std::string left_out_of_export(const std::filesystem::path &path)
 {
   try {
-    Warnings ignored;
-    const std::size_t count = load_document(path, ignored).model.variants.size();
-    return count == 0 ? "" : std::to_string(count) + (count == 1 ? " variant" : " variants") + " of materials";
+    Warnings warnings;
+    const std::size_t count = load_document(path, warnings).model.variants.size();
+    const std::string variants =
+        count == 0 ? "" : std::to_string(count) + (count == 1 ? " variant" : " variants") + " of materials";
+    const std::string extras = warnings.foreign_extras();
+    return variants + (variants.empty() || extras.empty() ? "" : " and ") + extras;
   }
   catch (const std::exception &) {
     return "";

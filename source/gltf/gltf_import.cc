@@ -232,7 +232,7 @@ class Importer {
   /** Adds the node. \return an invalid handle if it is left out. */
   Handle<Node> import_node(int index, Handle<Node> parent, const glm::dmat4 &parent_from_node, const glm::dmat4 &world)
   {
-    if (!is_usable(world)) {
+    if (!is_usable(world) || !is_usable(parent_from_node)) {
       warnings_.add_counted(node_label(index), 1, "left out: its matrix is not finite or reaches beyond 1e12 m");
       lost_node_count_++;
       return {};
@@ -296,7 +296,7 @@ class Importer {
   void import_instance(int index, std::size_t instance, Handle<Node> parent, const glm::dmat4 &parent_from_node,
                        const glm::dmat4 &world)
   {
-    if (!is_usable(world)) {
+    if (!is_usable(world) || !is_usable(parent_from_node)) {
       warnings_.add_counted(node_label(index), 1,
                             "instance left out: its matrix is not finite or reaches beyond 1e12 m");
       return;

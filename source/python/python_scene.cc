@@ -77,6 +77,9 @@ const Fields<Mesh> mesh_fields = {
     rows_field<glm::vec2>("uvs", &Mesh::uvs,
                           "N x 2 float32, where the positions are in textures, or 0 x 2. (0, 0) is the upper left "
                           "corner, (1, 1) the lower right. Read-only; assign another array."),
+    rows_field<glm::vec4>("colors", &Mesh::colors,
+                          "N x 4 float32, linear red, green, blue and alpha from 0 to 1, which are multiplied with the "
+                          "material's, or 0 x 4. Read-only; assign another array."),
     {"triangles",
      "M x 3 uint32, indices of positions, counter-clockwise as seen from the front. Read-only; assign another array. "
      "Meshes of lines or points from files have none.",
@@ -220,8 +223,8 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
   if (uvs) {
     mesh.uvs = rows_of<glm::vec2>(*uvs, "uvs");
   }
-  add_tangents(mesh);
   mesh = made(mesh_fields, scene, values, std::move(mesh));
+  add_tangents(mesh);
   return {scene, scene->edited().add(std::move(mesh))};
 }
 
@@ -276,6 +279,18 @@ void save(const ScenePtr &scene, const std::filesystem::path &path)
   const Reading reading(scene);
   const py::gil_scoped_release unlocked;
   gltf::export_gltf(scene->scene, path);
+}
+
+/** The same, with a warning of what the scene's file has and the new one has not. */
+void save_with_warning(const ScenePtr &scene, const std::filesystem::path &path)
+{
+  // Before the file is replaced.
+  const std::string left_out = gltf::left_out_of_export(scene->scene.path);
+  save(scene, path);
+  const std::string text = "the scene is saved without its " + left_out;
+  if (!left_out.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) {
+    throw py::error_already_set();
+  }
 }
 
 /** Its values have the words of the scene as names. */
@@ -355,6 +370,14 @@ void define_scene(py::module_ &module)
           "A Node, or None for a root. A change keeps parent_from_node.");
 
   type.def(py::init<>(), "A scene without content.");
+  for (const char *name : {"__copy__", "__deepcopy__"}) {
+    type.def(name, [](const ScenePtr &scene, const py::args & /*memo*/) {
+      const auto copy = std::make_shared<SharedScene>();
+      const Reading reading(scene);
+      copy->scene = scene->scene;
+      return copy;
+    });
+  }
   define_pool<Node>(type, "nodes");
   define_pool<Mesh>(type, "meshes");
   define_pool<SurfaceFunction>(type, "surface_functions");
@@ -374,9 +397,14 @@ void define_scene(py::module_ &module)
       py::arg("uvs") = py::none(),
       "Add a mesh: `positions` (m) and `normals` (unit vectors) are arrays of N x 3 float32, `triangles` of M x 3 "
       "uint32 indices, counter-clockwise as seen from the front. It is drawn at the nodes that have it. `uvs`: "
-      "where the positions are in textures, N x 2 float32; (0, 0) is the upper left corner, (1, 1) the lower right.");
+      "where the positions are in textures, N x 2 float32; (0, 0) is the upper left corner, (1, 1) the lower right. "
+      "Further arguments: the properties `colors`, `name` and `material` of Mesh.");
   define_pictures(module, type);
-  type.def("save", &save, py::arg("path"), "Write the scene as glTF 2.0: .gltf or .glb. Raises FileError.");
+  type.def("_save", &save);
+  type.def(
+      "save", &save_with_warning, py::arg("path"),
+      "Write the scene as glTF 2.0: .gltf or .glb. Variants of materials and extras of other programs are left out, "
+      "with a warning. Raises FileError.");
   type.def_property_readonly(
       "warnings", [](const ScenePtr &scene) { return scene->scene.warnings; },
       "One text for each thing in the file that is not read.");

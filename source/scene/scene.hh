@@ -230,7 +230,7 @@ class Scene {
    *
    * Normals and tangents follow positions only where \a values has them, too.
    * \throws StaleHandle; InvalidEdit for a vertex that the mesh does not have, a vector of another length or one that
-   * is empty in the mesh, and a position that is not finite. The scene is then unchanged.
+   * is empty in the mesh, a value that is not finite, and a colour out of range. The scene is then unchanged.
    */
   void set_vertices(Handle<Mesh> mesh, const VertexValues &values);
   /**

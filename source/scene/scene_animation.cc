@@ -215,8 +215,12 @@ void pose_node(Scene &scene, const AnimatedNode &animated, double seconds)
     animated.scale_track->evaluate(seconds, {&scale.x, 3});
   }
   if (animated.translation_track || animated.rotation_track || animated.scale_track) {
-    scene.set_transform(animated.node, glm::translate(glm::dmat4(1.0), translation) * glm::mat4_cast(rotation) *
-                                           glm::scale(glm::dmat4(1.0), scale));
+    glm::dmat4 parent_from_node =
+        glm::translate(glm::dmat4(1.0), translation) * glm::mat4_cast(rotation) * glm::scale(glm::dmat4(1.0), scale);
+    for (int column = 0; column < 4; column++) {
+      parent_from_node[column] = glm::clamp(parent_from_node[column], -number_max, number_max);
+    }
+    scene.set_transform(animated.node, parent_from_node);
   }
   if (animated.weights_track) {
     std::vector<double> weights(animated.weights_track->width);

@@ -3,11 +3,13 @@
 
 #include "internal/scene_changes.hh"
 #include "internal/scene_rest_shape.hh"
+#include "internal/scene_values.hh"
 #include "memory_pages.hh"
 
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -24,16 +26,11 @@ template <typename... Args>
   throw InvalidEdit(fmt::format("{} '{}': {}", kind, name, fmt::format(reason, std::forward<Args>(args)...)));
 }
 
-bool is_finite(const glm::vec3 &value)
-{
-  return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
-}
-
 void check(const Mesh &mesh)
 {
   if (mesh.host_shape) {
     const Bounds &bounds = mesh.host_shape->bounds;
-    if (!is_finite(bounds.min) || !is_finite(bounds.max) || !glm::all(glm::lessThanEqual(bounds.min, bounds.max))) {
+    if (first_infinite(std::array{bounds.min, bounds.max}) || !glm::all(glm::lessThanEqual(bounds.min, bounds.max))) {
       refuse("mesh", mesh.name, "the bounds of its shape in the host's buffers are empty or not finite");
     }
     if (!mesh.positions.empty() || !mesh.indices.empty()) {
@@ -45,15 +42,23 @@ void check(const Mesh &mesh)
   if (mesh.normals.size() != count) {
     refuse("mesh", mesh.name, "{} normals for {} positions", mesh.normals.size(), count);
   }
-  const auto check_count = [&](std::string_view what, std::size_t size) {
-    if (size != 0 && size != count) {
-      refuse("mesh", mesh.name, "{} {} for {} positions", size, what, count);
+  const auto check_stream = [&](std::string_view what, const auto &stream) {
+    if (!stream.empty() && stream.size() != count) {
+      refuse("mesh", mesh.name, "{} {}s for {} positions", stream.size(), what, count);
+    }
+    if (const auto index = first_infinite(stream)) {
+      refuse("mesh", mesh.name, "{} {} is not finite", what, *index);
     }
   };
-  check_count("uvs", mesh.uvs.size());
-  check_count("second uvs", mesh.second_uvs.size());
-  check_count("tangents", mesh.tangents.size());
-  check_count("colours", mesh.colors.size());
+  check_stream("position", mesh.positions);
+  check_stream("normal", mesh.normals);
+  check_stream("uv", mesh.uvs);
+  check_stream("second uv", mesh.second_uvs);
+  check_stream("tangent", mesh.tangents);
+  check_stream("colour", mesh.colors);
+  if (const auto index = first_beyond_one(mesh.colors)) {
+    refuse("mesh", mesh.name, "colour {} is not from 0 to 1", *index);
+  }
   if (mesh.indices.size() % index_count_of(mesh.topology) != 0) {
     refuse("mesh", mesh.name, "{} indices are not {}", mesh.indices.size(),
            mesh.topology == Topology::Triangles ? "three for each triangle" : "two for each line");
@@ -61,10 +66,6 @@ void check(const Mesh &mesh)
   const auto beyond = std::ranges::find_if(mesh.indices, [&](std::uint32_t index) { return index >= count; });
   if (beyond != mesh.indices.end()) {
     refuse("mesh", mesh.name, "index {} is beyond its {} positions", *beyond, count);
-  }
-  const auto infinite = std::ranges::find_if_not(mesh.positions, is_finite);
-  if (infinite != mesh.positions.end()) {
-    refuse("mesh", mesh.name, "position {} is not finite", infinite - mesh.positions.begin());
   }
 }
 
@@ -91,8 +92,10 @@ void check_transform(const std::string &name, const glm::dmat4 &matrix)
 {
   for (int column = 0; column < 4; column++) {
     for (int row = 0; row < 4; row++) {
-      if (!std::isfinite(matrix[column][row])) {
-        refuse("node", name, "its matrix is not finite");
+      // False for NaN too.
+      if (const double value = matrix[column][row]; !(std::abs(value) <= number_max)) {
+        refuse("node", name, "its matrix has {:g} in row {} and column {}, which is not {}", value, row, column,
+               range_text({.name = "matrix", .min = -number_max}));
       }
       if (row == 3 && matrix[column][3] != (column == 3 ? 1.0 : 0.0)) {
         refuse("node", name, "its matrix is not affine: the last row is not 0 0 0 1");

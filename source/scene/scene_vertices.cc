@@ -3,11 +3,11 @@
 #include "scene.hh"
 
 #include "internal/scene_changes.hh"
+#include "internal/scene_values.hh"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 
 namespace gnomon::scene {
@@ -43,12 +43,12 @@ void check(const Mesh &mesh, const VertexValues &values)
     if (!set.empty() && stream.empty()) {
       refuse(fmt::format("it has no {}", what));
     }
-  });
-  for (std::size_t i = 0; i < values.positions.size(); i++) {
-    const glm::vec3 &position = values.positions[i];
-    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-      refuse(fmt::format("position {} is not finite", values.vertices[i]));
+    if (const auto index = first_infinite(set)) {
+      refuse(fmt::format("{} {} is not finite", what.substr(0, what.size() - 1), values.vertices[*index]));
     }
+  });
+  if (const auto index = first_beyond_one(values.colors)) {
+    refuse(fmt::format("colour {} is not from 0 to 1", values.vertices[*index]));
   }
 }
 

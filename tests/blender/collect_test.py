@@ -39,6 +39,23 @@ def place_image():
     tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
 
 
+def paint_vertices():
+    """Boxes with colours of corners and of vertices, of which a material reads those that are not for renders."""
+    for index, (domain, kind) in enumerate((('CORNER', 'BYTE_COLOR'), ('POINT', 'FLOAT_COLOR'))):
+        bpy.ops.mesh.primitive_cube_add(size=1, location=(2 * index - 2, -2, 1))
+        mesh = bpy.context.object.data
+        for name in ('first', 'second'):
+            attribute = mesh.color_attributes.new(name, kind, domain)
+            colors = numpy.random.default_rng(len(name)).random((len(attribute.data), 4))
+            attribute.data.foreach_set('color', colors.astype(numpy.float32).reshape(-1))
+        material = bpy.data.materials.new('painted')
+        material.use_nodes = True
+        node = material.node_tree.nodes.new('ShaderNodeVertexColor')
+        node.layer_name = 'first'
+        material.node_tree.links.new(node.outputs['Color'], material.node_tree.nodes['Principled BSDF'].inputs['Base Color'])
+        mesh.materials.append(material)
+
+
 def encoded(picture):
     linear = numpy.clip(picture[:, :, :3], 0, 1)
     return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
@@ -50,6 +67,7 @@ def layers_of(device, scene, camera):
 
 if not bpy.data.filepath:
     place_image()
+    paint_vertices()
 device = gnomon.Device()
 depsgraph = bpy.context.evaluated_depsgraph_get()
 with tempfile.TemporaryDirectory() as folder:

@@ -11,7 +11,7 @@ import unittest.mock
 
 import bpy
 import numpy
-from mathutils import Vector
+from mathutils import Matrix, Quaternion, Vector
 
 FOLDER = sys.argv[sys.argv.index('--') + 1]
 LUMEN_PER_WATT = 683
@@ -371,9 +371,15 @@ class Objects(ExportTest):
     def test_colours_of_corners(self):
         stuff = material()
         tree = stuff.node_tree
-        tree.links.new(tree.nodes.new('ShaderNodeVertexColor').outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        node = tree.nodes.new('ShaderNodeVertexColor')
+        node.layer_name = 'Col'
+        tree.links.new(node.outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
         box = add_box('box', stuff=stuff)
-        colors = box.data.color_attributes.new('Col', 'FLOAT_COLOR', 'CORNER').data
+        # The material does not read the colours for renders.
+        box.data.color_attributes.new('Other', 'FLOAT_COLOR', 'CORNER')
+        box.data.color_attributes.new('Col', 'FLOAT_COLOR', 'CORNER')
+        box.data.color_attributes.render_color_index = 0
+        colors = box.data.color_attributes['Col'].data
         for polygon in box.data.polygons:
             for corner in polygon.loop_indices:
                 colors[corner].color = (*(0.5 + 0.5 * x for x in polygon.normal), 1)
@@ -382,6 +388,7 @@ class Objects(ExportTest):
         normals, found = file.values(attributes['NORMAL']), file.values(attributes['COLOR_0'])[:, :3]
         expected = 0.5 + 0.5 * normals[:, [0, 2, 1]] * (1, -1, 1)
         self.assertLess(abs(found - expected).max(), 1e-6)
+        self.assertEqual(box.data.color_attributes.render_color_index, 0)
 
     def test_instances_of_particles_are_written(self):
         box = add_box()
@@ -443,6 +450,44 @@ class Objects(ExportTest):
         instance = add('instance', None, (0, 0, 7))
         instance.instance_type, instance.instance_collection = 'COLLECTION', collection
         self.assertEqual([node['matrix'][13] for node in File().json['nodes'] if node['name'] == 'instance of_meshes'], [7] * 9)
+
+    def test_instances_within_instances_of_collections(self):
+        inner, outer = (bpy.data.collections.new(name) for name in ('inner', 'outer'))
+        grain = add_box('grain', 0.1, collection=inner, location=(0.1, 0.2, 0.3))
+        for name, kind in (('emitter', None), ('corners', 'VERTS'), ('sides', 'FACES')):
+            thing = add_box(name, collection=inner, location=(1, 2, 3))
+            if kind is None:
+                system = thing.modifiers.new('particles', 'PARTICLE_SYSTEM').particle_system.settings
+                system.type, system.count, system.render_type, system.instance_object = 'HAIR', 5, 'OBJECT', grain
+            else:
+                thing.instance_type = kind
+                add_box(f'on_{name}', 0.1, collection=inner).parent = thing
+        # The exporter writes the surface of a text.
+        add('text', bpy.data.curves.new('text', 'FONT'), collection=inner).data.body = 'a'
+        for name, collection, within, location in (('a', inner, outer, (0, 0, 5)), ('b', outer, None, (7, 0, 0)), ('c', inner, None, (0, 9, 0))):
+            instance = add(name, None, location, within)
+            instance.instance_type, instance.instance_collection = 'COLLECTION', collection
+            instance.scale = (2, 1, -1)
+        bpy.context.view_layer.update()
+        wanted = sorted((instance.object.name, *(round(value, 3) + 0 for value in instance.matrix_world.translation))
+                        for instance in bpy.context.evaluated_depsgraph_get().object_instances if instance.object.type == 'MESH' and instance.show_self)
+        self.assertEqual(len(wanted), 2 * (1 + 3 + 5 + 8 + 6 + 1))
+        file = File(export_yup=False)
+        found = []
+
+        def walk(index, above):
+            node = file.json['nodes'][index]
+            place = above @ (Matrix(numpy.reshape(node['matrix'], (4, 4)).T.tolist()) if 'matrix' in node else Matrix.LocRotScale(
+                node.get('translation', (0, 0, 0)), Quaternion(numpy.roll(node.get('rotation', (0, 0, 0, 1)), 1)), node.get('scale', (1, 1, 1))))
+            if 'mesh' in node:
+                found.append((file.json['meshes'][node['mesh']]['name'], *(round(value, 3) + 0 for value in place.translation)))
+            for child in node.get('children', ()):
+                walk(child, place)
+
+        for root in file.json['scenes'][0]['nodes']:
+            walk(root, Matrix())
+        self.assertEqual(sorted(found), wanted)
+        self.assertNotIn("object", file.report)
 
     def test_metaballs_curves_and_texts_are_written_once(self):
         meta = add('meta', bpy.data.metaballs.new('meta'), (1, 2, 3))

@@ -67,6 +67,14 @@ TEST(GltfAnimation, RotationsTurnEvenlyByTheShorterWay)
   EXPECT_NEAR(x_axis.y, std::sin(glm::pi<double>() / 6.0), 1e-7);
 }
 
+TEST(GltfAnimation, KeysBeyondTheRangeOfNodesAreLimited)
+{
+  GltfBuilder builder = triangle_scene();
+  add_channel(builder, {{"node", 0}, {"path", "translation"}}, {0, 1}, {0, 0, 0, 1e30F, -1e30F, 0}, "VEC3");
+  Scene scene = import(builder);
+  EXPECT_EQ(position_at(scene, 1.0), glm::dvec3(1e12, -1e12, 0.0));
+}
+
 TEST(GltfAnimation, MorphTargetsAreAddedByTheirWeights)
 {
   GltfBuilder builder = triangle_scene();

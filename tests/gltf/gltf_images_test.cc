@@ -134,6 +134,40 @@ TEST(GltfImage, LargerOnesThanTheLimitAreReduced)
   EXPECT_EQ(image.texels[3], 112);
 }
 
+TEST(GltfImage, AReducedMaskCoversAsMuchWithTheAlphaOfItsVertices)
+{
+  // 4 of 16 texels have alpha 1, 8 have 0.6 and 4 have 0.
+  Bytes texels;
+  for (int i = 0; i < 16; i++) {
+    const int place = (i % 4 + i / 4) % 4;
+    texels.insert(texels.end(), {0, 200, 0, std::uint8_t(place == 0 ? 255 : place == 1 ? 0 : 153)});
+  }
+  GltfBuilder builder = textured_triangle({{"uri", data_uri(image_file("png", 4, 4, 4, texels))}});
+  builder.append("samplers", {{"magFilter", 9728}});
+  builder.document["textures"][0]["sampler"] = 0;
+  builder.document["materials"][0]["alphaMode"] = "MASK";
+  const auto covered = [&](float least) {
+    const Scene scene = import_text(builder.gltf(), "scene.gltf", {.texture_size_max = 2});
+    const Image &image = nth(scene.images(), 0);
+    int count = 0;
+    for (std::size_t i = 3; i < image.texels.size(); i += 4) {
+      count += float(image.texels[i]) / 255.0F >= least ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(covered(0.5F), 3);
+  json &attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  attributes["COLOR_0"] =
+      builder.accessor(std::vector<float>{1, 1, 1, 0.5F, 1, 1, 1, 0.75F, 1, 1, 1, 1}, Float32, "VEC4");
+  EXPECT_EQ(covered(0.5F / 0.75F), 1);
+  // The mean counts where vertices differ, and the factor, too.
+  builder.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.8};
+  EXPECT_EQ(covered(0.5F / (0.75F * 0.8F)), 1);
+  // Nothing is seen of it.
+  builder.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.6};
+  EXPECT_EQ(covered(0.0F), 4);
+}
+
 TEST(GltfImage, LimitsCountAfterTheReduction)
 {
   // Wider than any texture.

@@ -214,10 +214,13 @@ TEST(GltfNodes, MatrixOutOfFloatIsLeftOut)
   GltfBuilder builder = triangle_scene();
   builder.node({{"name", "far"}, {"mesh", 0}, {"translation", {1e300, 0, 0}}});
   builder.node({{"name", "farther"}, {"mesh", 0}, {"scale", {1e13, 1, 1}}});
+  // The product with its parent's matrix would be in range.
+  const int large = builder.append("nodes", {{"name", "large"}, {"mesh", 0}, {"scale", {1e13, 1, 1}}});
+  builder.node({{"name", "small"}, {"scale", {1e-13, 1, 1}}, {"children", {large}}});
   const Scene scene = import(builder);
   EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene,
-                 "node 'far' and 1 other: left out: its matrix is not finite or reaches beyond 1e12 m (2 times)");
+                 "node 'far' and 2 others: left out: its matrix is not finite or reaches beyond 1e12 m (3 times)");
 }
 
 TEST(GltfNodes, ObjectBeyondTheWorldIsLeftOut)

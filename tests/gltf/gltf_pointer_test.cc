@@ -62,6 +62,9 @@ TEST(GltfPointer, TransformsOfTexturesArePlayed)
     add_channel(builder, pointer_to(transform + "offset"), {0, 1}, {0, 0, 0.5F, 1}, "VEC2");
     add_channel(builder, pointer_to(transform + "rotation"), {0, 1}, {0, 2}, "SCALAR");
     add_channel(builder, pointer_to(transform + "scale"), {0, 1}, {1, 1, 3, 5}, "VEC2");
+    const bool has_normals = path.ends_with("NormalTexture");
+    EXPECT_EQ(all_warnings(import(builder)).find("the directions of its normals do not") != std::string::npos,
+              has_normals);
     for (Scene &scene : scenes_of(builder)) {
       pose_first(scene, 0.5);
       const scene::TextureSlot &posed = nth(scene.materials(), 0).*slot;

@@ -106,12 +106,26 @@ class Scenes(unittest.TestCase):
                     self.assertTrue((a.positions == b.positions).all() and (a.triangles == b.triangles).all())
                 self.assertEqual([(lamp.name, lamp.kind, lamp.intensity) for lamp in again.lamps],
                                  [(lamp.name, lamp.kind, lamp.intensity) for lamp in scene.lamps])
-                self.assertEqual(pickle.dumps(pickle.loads(pickle.dumps(again))), pickle.dumps(again))
+                # A file names what has no name.
+                named = pickle.loads(pickle.dumps(again))
+                self.assertEqual(pickle.dumps(pickle.loads(pickle.dumps(named))), pickle.dumps(named))
         scene = square_scene()
         scene.remove(scene.lamps[0])
         scene.remove(scene.cameras[0])
         again = pickle.loads(pickle.dumps(scene))
         self.assertEqual((again.lamps, again.cameras, len(again.nodes)), ([], [], 3))
+        mesh = scene.meshes[0]
+        scene.add_mesh(mesh.positions, mesh.normals, mesh.triangles, name="spare")
+        scene.add_material(name="spare")
+        scene.add_lamp(name="spare")
+        again = copy.deepcopy(scene)
+        for names in ("meshes", "materials", "lamps", "cameras"):
+            self.assertEqual([each.name for each in getattr(again, names)], [each.name for each in getattr(scene, names)])
+        again.meshes[0].positions = 2 * mesh.positions
+        again.lamps[-1].name = "other"
+        self.assertEqual((mesh.positions.max(), scene.lamps[-1].name), (9, "spare"))
+        with self.assertWarnsRegex(UserWarning, "no node uses is not pickled: 1 meshes, 1 materials, 1 lamps$"):
+            pickle.dumps(scene)
         scene.remove(scene.nodes[0])
         with self.assertRaisesRegex(ValueError, "without a mesh"):
             pickle.dumps(scene)
@@ -173,7 +187,8 @@ class Scenes(unittest.TestCase):
                 (TypeError, "lamp 'sun' has no property 'power'; it has: name, kind", lambda: lamp.edit(angle=0.1, power=1)),
                 (gnomon.InvalidEdit, "camera 'eye': near -1 is not above 0", lambda: setattr(camera, "near", -1)),
                 (gnomon.InvalidEdit, "camera 'eye': vertical_angle 4 ", lambda: setattr(camera, "vertical_angle", 4)),
-                (gnomon.InvalidEdit, "node 'square': its matrix is not", lambda: setattr(node, "position", (math.inf, 0, 0))),
+                (gnomon.InvalidEdit, r"node 'square': its matrix has 1e\+300 in row 1 and column 3, which is not from -1e\+12 to 1e\+12$",
+                 lambda: setattr(node, "position", (0, 1e300, 0))),
                 (gnomon.InvalidEdit, "node", lambda: setattr(node, "parent", node)),
                 (TypeError, "node 'square': parent_from_node", lambda: setattr(node, "parent_from_node", [1, 2])),
                 (gnomon.InvalidEdit, "world", lambda: scene.set_world(strength=-1))):
@@ -194,6 +209,12 @@ class Scenes(unittest.TestCase):
                                     (gnomon.InvalidEdit, "index 3", (corners, normals, triangle + numpy.uint32(1)))):
             with self.assertRaisesRegex(error, text):
                 scene.add_mesh(*arrays)
+        for text, colors in (("mesh: colors is not", corners), ("mesh '': 2 colours for 3", numpy.ones((2, 4), numpy.float32)),
+                             ("mesh '': colour 0 is not from 0 to 1", numpy.full((3, 4), 1.1, numpy.float32))):
+            with self.assertRaisesRegex(gnomon.InvalidEdit, text):
+                scene.add_mesh(corners, normals, triangle, colors=colors)
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "normal 2 is not finite"):
+            scene.add_mesh(corners, numpy.float32([(0, 0, 1), (0, 0, 1), (math.nan, 0, 1)]), triangle)
         self.assertEqual(scene.meshes, [])
 
     def test_arrays_of_meshes_are_read_and_replaced(self):
@@ -289,6 +310,13 @@ class Scenes(unittest.TestCase):
             with self.assertRaises(KeyboardInterrupt):
                 gnomon.load(saved, progress=stop)
             self.assertEqual(loaded.materials[0].base_color, (0.5, 0.25, 0.125))
+            named = os.path.join(folder, "named.gltf")
+            scene.save(named)
+            document = json.loads(Path(named).read_text())
+            document["nodes"][0]["extras"] = {"price": 3}
+            Path(named).write_text(json.dumps(document))
+            with self.assertWarnsRegex(UserWarning, "saved without its extra 'price' of node 'square'$"):
+                gnomon.load(named).save(named)
             with self.assertRaisesRegex(gnomon.FileError, "nowhere"):
                 scene.save(os.path.join(folder, "nowhere", "saved.glb"))
             for name in (b"/\xe9.glb", "/\udce9.glb"):
@@ -315,6 +343,21 @@ class Pictures(unittest.TestCase):
         mesh.triangles = mesh.triangles[:1]
         half = renderer.render()
         self.assertAlmostEqual(half[:, :, 3].mean(), 0.5, delta=0.05)
+
+    def test_colors_of_vertices_are_drawn(self):
+        scene = square_scene()
+        mesh = scene.meshes[0]
+        self.assertEqual(mesh.colors.shape, (0, 4))
+        renderer = gnomon.Renderer(self.device, scene, (16, 16), **SMALL)
+        white = renderer.render()
+        colors = numpy.float32([(0.5, 0.25, 1, 1)] * 4)
+        mesh.colors = colors
+        # On devices they have 16 bits: half a step of 0.25.
+        numpy.testing.assert_allclose(renderer.render(), white * colors[0], rtol=4e-5)
+        # Two triangles that mirror the image have tangents that split vertices.
+        uvs = numpy.float32([(0, 0), (1, 0), (1, 1), (2, 0)])
+        other = scene.add_mesh(mesh.positions, mesh.normals, mesh.triangles, uvs, colors=colors[:, ::-1], material=mesh.material)
+        self.assertEqual(other.colors.tolist(), [colors[0, ::-1].tolist()] * len(other.positions))
 
     def test_radiance_is_that_of_the_closed_form(self):
         renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)

@@ -643,10 +643,15 @@ TEST_F(RenderSceneTest, AnUpdateAfterOneThatFailedIsWhole)
   const auto node = add_object(scene, mesh, at({0, 0, 0}));
   scene.edit(node, [&](scene::Node &value) { value.meshes.push_back(mesh); });
   // Finite in double and not in float.
-  scene.edit(node, [](scene::Node &value) { value.parent_from_node[3].x = 1e39; });
+  const auto scaled = [&](scene::Handle<scene::Node> parent) {
+    return scene.add(scene::Node{.name = "scaled", .parent_from_node = glm::scale(glm::dmat4(1.0), glm::dvec3(1e12))},
+                     parent);
+  };
+  scene.set_parent(node, scaled(scaled(scaled({}))));
+  scene.edit(node, [](scene::Node &value) { value.parent_from_node[3].x = 1e12; });
   EXPECT_THROW(render_scene.update(), gpu::Error);
   EXPECT_THROW(render_scene.update(), gpu::Error);
-  scene.edit(node, [](scene::Node &value) { value.parent_from_node[3].x = 2.0; });
+  scene.set_parent(node, {});
   render_scene.update();
   EXPECT_EQ(object_count(), 2U);
 }

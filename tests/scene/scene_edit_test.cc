@@ -801,6 +801,9 @@ TEST_F(SceneVertices, ThatDoNotFitAreRefused)
             "mesh '': 1 normals for 2 vertices");
   EXPECT_EQ(refused({.vertices = vertices, .uvs = std::array{glm::vec2(0), glm::vec2(0)}}), "mesh '': it has no uvs");
   EXPECT_EQ(refused({.vertices = vertices, .positions = infinite}), "mesh '': position 4 is not finite");
+  const std::vector<glm::vec4> bright(vertices.size(), glm::vec4(1.0F, 1.5F, 1.0F, 1.0F));
+  EXPECT_EQ(refused({.vertices = vertices, .colors = bright}),
+            fmt::format("mesh '': colour {} is not from 0 to 1", vertices[0]));
   EXPECT_EQ(refused({.vertices = vertices}), "nothing");
   EXPECT_EQ(scene.revision(), revision);
   EXPECT_EQ(scene.meshes()[mesh].positions, before.positions);
@@ -1004,6 +1007,17 @@ TEST(SceneEdit, InvalidValuesAreRefused)
                                     {"2 indices", [](Mesh &mesh) { mesh.indices.pop_back(); }},
                                     {"index 3 is beyond", [](Mesh &mesh) { mesh.indices[1] = 3; }},
                                     {"index 4294967295", [](Mesh &mesh) { mesh.indices[2] = 0xFFFFFFFFU; }},
+                                    {"normal 0 is not finite", [](Mesh &mesh) { mesh.normals[0].z = float(infinity); }},
+                                    {"uv 1 is not finite",
+                                     [](Mesh &mesh) {
+                                       mesh.uvs.assign(3, {});
+                                       mesh.uvs[1].y = float(nan);
+                                     }},
+                                    {"colour 2 is not from 0 to 1",
+                                     [](Mesh &mesh) {
+                                       mesh.colors.assign(3, glm::vec4(1.0F));
+                                       mesh.colors[2].a = 1.5F;
+                                     }},
                                     {"position 1 is not finite", [](Mesh &mesh) { mesh.positions[1].y = float(nan); }},
                                     {"position 2", [](Mesh &mesh) { mesh.positions[2].z = float(-infinity); }}});
   const auto of_host = [](const Bounds &bounds) { return HostShape{.bounds = bounds}; };
@@ -1030,11 +1044,14 @@ TEST(SceneEdit, InvalidValuesAreRefused)
       {.name = "f"},
       {{"surface function 'f': 65537 bytes", [](SurfaceFunction &function) { function.text.assign(65537, ' '); }},
        {"NUL", [](SurfaceFunction &function) { function.text.assign(1, '\0'); }}});
-  expect_refused<Node>(named("n"), {{"not finite", [](Node &node) { node.parent_from_node[1][1] = nan; }},
-                                    {"not finite", [](Node &node) { node.parent_from_node[3][0] = infinity; }},
-                                    {"not affine", [](Node &node) { node.parent_from_node[0][3] = 0.5; }},
-                                    {"not affine", [](Node &node) { node.parent_from_node[3][3] = 2.0; }},
-                                    {"not affine", [](Node &node) { node.parent_from_node = glm::dmat4(0.0); }}});
+  expect_refused<Node>(
+      named("n"), {{"its matrix has nan in row 1 and column 1", [](Node &node) { node.parent_from_node[1][1] = nan; }},
+                   {"its matrix has inf in row 0 and column 3, which is not from -1e+12 to 1e+12",
+                    [](Node &node) { node.parent_from_node[3][0] = infinity; }},
+                   {"its matrix has -1e+300 in row 2", [](Node &node) { node.parent_from_node[3][2] = -1e300; }},
+                   {"not affine", [](Node &node) { node.parent_from_node[0][3] = 0.5; }},
+                   {"not affine", [](Node &node) { node.parent_from_node[3][3] = 2.0; }},
+                   {"not affine", [](Node &node) { node.parent_from_node = glm::dmat4(0.0); }}});
   expect_refused<Lamp>({.name = "l"},
                        {{"intensity is not finite", [](Lamp &lamp) { lamp.intensity = float(nan); }},
                         {"intensity -30 is not from 0 to 1e+30", [](Lamp &lamp) { lamp.intensity = -30.0F; }},

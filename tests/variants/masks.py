@@ -16,6 +16,9 @@ VALUES = {
     "filter": ["linear", "nearest"],
     # As far above the cutoff as below it, or 0 and 1.
     "alphas": ["near the cutoff", "all or nothing"],
+    # Of the material, and of all vertices, in floats or bytes.
+    "factor": [1, 1, 0.8],
+    "vertex alpha": [None, None, 1.0, 0.8, 204],
     "colour of nothing": [(1, 0, 0), (0, 0, 0), (1, 1, 1)],
     "file": ["data URI", "GLB"],
 }
@@ -50,9 +53,17 @@ def check(program, random, of):
     gltf = quad_scene()
     json = gltf.json
     json["extensionsUsed"] = ["KHR_materials_unlit"]
-    distance = min(of["cutoff"], 1 - of["cutoff"])
+    vertex_alpha = 1 if of["vertex alpha"] is None else of["vertex alpha"] / (255 if isinstance(of["vertex alpha"], int) else 1)
+    if of["mode"] == "BLEND":
+        cutoff = 0
+    else:
+        # The least alpha of texels that are covered is below 1.
+        of["cutoff"] = min(of["cutoff"], 0.5) if min(of["factor"], vertex_alpha) < 1 else of["cutoff"]
+        cutoff = of["cutoff"] / (of["factor"] * vertex_alpha)
+    # Where vertices have an alpha, others are covered than without it.
+    distance = min(cutoff, 1 - cutoff) / (4 if vertex_alpha < 1 else 1)
     is_near = of["mode"] == "MASK" and of["alphas"] == "near the cutoff"
-    low, high = (of["cutoff"] - distance, of["cutoff"] + distance) if is_near else (0, 1)
+    low, high = (cutoff - distance, cutoff + distance) if is_near else (0, 1)
     texture = gltf.texture(size, lambda u, v: (0, GREEN, 0, high) if is_covered(int(u * size), int(v * size)) else
                            (*of["colour of nothing"], low))
     # Few samples of a pixel that has few texels are at one place between their centres. With a whole number of texels in a pixel, it is the
@@ -66,14 +77,20 @@ def check(program, random, of):
         (of["samples"] == 16 or texels_in_pixel >= (2 if pattern in ("columns", "rows") else 4))
     magnified, minified = LINEAR if is_linear else NEAREST
     alphas = numpy.array([[high if is_covered(x, y) else low for x in range(size)] for y in range(size)])
-    part = alphas.mean() if of["mode"] == "BLEND" else filtered_part(alphas, of["cutoff"]) if is_linear else \
-        (alphas >= of["cutoff"]).mean()
+    part = alphas.mean() * of["factor"] * vertex_alpha if of["mode"] == "BLEND" else filtered_part(alphas, cutoff) if is_linear else \
+        (alphas >= cutoff).mean()
     json["samplers"] = [{"magFilter": magnified, "minFilter": minified}]
     json["textures"][0]["sampler"] = 0
-    json["materials"][0].update(pbrMetallicRoughness={"baseColorTexture": texture}, alphaMode=of["mode"],
+    json["materials"][0].update(pbrMetallicRoughness={"baseColorTexture": texture, "baseColorFactor": [1, 1, 1, of["factor"]]},
+                                alphaMode=of["mode"],
                                 extensions={"KHR_materials_unlit": {}})
     if of["mode"] == "MASK":
         json["materials"][0]["alphaCutoff"] = of["cutoff"]
+    if vertex_alpha != 1 or of["vertex alpha"] is not None:
+        number, code, component = (255, "B", 5121) if isinstance(of["vertex alpha"], int) else (1.0, "f", 5126)
+        accessor = gltf.accessor([[number, number, number, of["vertex alpha"]]] * 4, "VEC4", code, component)
+        json["accessors"][accessor]["normalized"] = component == 5121
+        json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor
     path = gltf.write_form(f"{program.folder}/scene", of["file"])
     limit = ["--texture-size-max", str(size // reduced)] if reduced > 1 else []
     pixels = program.render(path, "--size", f"{of['pixels']}x{of['pixels']}", "--samples", str(of["samples"]), "--world", "1,1,1", *limit)
@@ -89,6 +106,7 @@ def check(program, random, of):
            f"covers {color[3]:.4f}, not {part:.4f} to {tolerance:.3f}; {texels_in_pixel} texels in a pixel")
     green = decoded_srgb(GREEN)
     # A linear filter mixes in the colour of texels with a little alpha, as glTF has it.
-    if color[3] > 0.01 and (low == 0 or magnified == NEAREST[0]):
+    # The colours of levels are those of texels that are covered without the alpha of vertices.
+    if color[3] > 0.01 and (low == 0 or (magnified == NEAREST[0] and vertex_alpha == 1)):
         expect(abs(color[1] / color[3] - green) < 0.02, f"green is {color[1] / color[3]}, not {green}")
         expect(max(color[0], color[2]) / color[3] < 0.02, f"the colour of nothing is seen: {color}")

@@ -21,7 +21,7 @@ VALUES = {
     "window": ["whole", "left", "right", "middle", "larger", "elsewhere"],
     "moved": [(0, 0), (5, -3)],
     "damage": [None, -1e-5, float("nan"), float("inf"), float("-inf")],
-    "order": ["-Y {h} +X {w}", "+Y {h} +X {w}", "-Y {h} -X {w}", "+X {w} -Y {h}", "-X {w} +Y {h}"],
+    "order": [f"{y}Y {{h}} {x}X {{w}}" for y in "-+" for x in "+-"] + [f"{x}X {{w}} {y}Y {{h}}" for y in "-+" for x in "+-"],
     "runs": ["new", "old", "none"],
     "exposure": [None, 2.0, 0.25],
     "strength": [1, 2],

@@ -110,11 +110,13 @@ class Export:
         self.names = {}
         # (name of the node, name of the object with the mesh, matrix)
         self.instances = []
+        self.objects_of = {}
         # Names of the objects of which instances take the mesh, and which are not drawn themselves.
         self.sources = set()
         self.show_as_rendered()
         self.find_instances()
         self.fill_slots()
+        self.choose_colors()
         if bpy.app.version < (3, 5):
             self.read_colors_by_corner()
         self.choose_options()
@@ -186,7 +188,8 @@ class Export:
                 continue
             # The exporter writes what collections, vertices and faces repeat, without the meshes that nodes make.
             is_made = own.type == 'MESH' and thing.data.as_pointer() != own.evaluated_get(depsgraph).data.as_pointer()
-            if parent.instance_type != 'NONE' and not is_made:
+            is_written = parent.instance_type != 'COLLECTION' or self.is_of_collections(instance)
+            if parent.instance_type != 'NONE' and not is_made and is_written:
                 continue
             # The surface of a curve is an instance of one number.
             is_surface = own == parent and instance.persistent_id[1] == NO_ID
@@ -208,6 +211,20 @@ class Export:
             self.instances.append((name, source, instance.matrix_world.copy()))
         for name, count in unwritten.items():
             self.report.add(f"object '{name}'", f"{count} of its instances are not written, because what they repeat has no surface")
+
+    def is_of_collections(self, instance):
+        """Whether the exporter writes an instance below an instance of a collection: not what an object in that collection repeats."""
+        collection = instance.parent.original.instance_collection
+        # Places in collections, the innermost first.
+        for place in reversed([each for each in instance.persistent_id if each != NO_ID]):
+            if collection not in self.objects_of:
+                self.objects_of[collection] = list(collection.all_objects) if collection else []
+            things = self.objects_of[collection]
+            thing = things[place] if place < len(things) else None
+            if thing is None or thing == instance.object.original:
+                return thing is not None
+            collection = thing.instance_collection if thing.instance_type == 'COLLECTION' else None
+        return False
 
     def copy_of(self, thing, depsgraph):
         """The name of an object for the time of the export that has the mesh of an evaluated object; None if that has no triangles."""
@@ -251,6 +268,16 @@ class Export:
         self.nothing = self.temporary.add_material() if meshes else None
         for mesh in meshes:
             self.temporary.fill_slots(mesh, self.nothing)
+
+    def choose_colors(self):
+        """The exporter writes the colours for renders, whichever a material reads."""
+        for mesh in (each for each in bpy.data.meshes if each.library is None and each.color_attributes):
+            nodes = [node for each in mesh.materials if materials.uses_color_attribute(each) for node in each.node_tree.nodes]
+            found = list(dict.fromkeys(name for node in nodes if (name := materials.color_name(node)) and name in mesh.color_attributes))
+            if found:
+                self.temporary.set(mesh.color_attributes, 'render_color_index', mesh.color_attributes.find(found[0]))
+            if len(found) > 1:
+                self.report.add(f"mesh '{mesh.name}'", f"of its colours '{found[0]}' are written, and not {', '.join(found[1:])}")
 
     def read_colors_by_corner(self):
         """The exporter of 3.4 takes the numbers of vertices for those of corners."""

@@ -29,7 +29,7 @@ class Placing:
     matrix: tuple[tuple[float, ...], ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
 
-NO_MATERIAL = None, False, Placing()
+NO_MATERIAL = None, False, Placing(), None
 
 
 def placing_of(image_node):
@@ -59,7 +59,7 @@ def numbers(collection, attribute, width, kind=numpy.float32):
 def parts_of(mesh, slots):
     """A Part for each material of a mesh; vertices are its face corners.
 
-    slots: (name of the material or None, whether light passes it, placing of its images)
+    slots: (name of the material or None, whether light passes it, placing of its images, name of the colours of vertices or None)
 
     Keys of materials are (name, thickness of the body, m).
     """
@@ -80,10 +80,10 @@ def parts_of(mesh, slots):
         corners, own = numpy.unique(own, return_inverse=True)
         arrays = {'positions': positions[vertices[corners]], 'normals': normals[corners],
                   'triangles': own.reshape(-1, 3).astype(numpy.uint32)}
-        name, is_glass, placing = slots[min(index, len(slots) - 1)] if slots else NO_MATERIAL
+        name, is_glass, placing, colors = slots[min(index, len(slots) - 1)] if slots else NO_MATERIAL
         layer = layer_of(mesh, placing)
-        if layer is not None:
-            arrays['uvs'] = placed(numbers(layer.data, 'uv', 2)[corners], placing)
+        arrays['uvs'] = numpy.empty((0, 2), numpy.float32) if layer is None else placed(numbers(layer.data, 'uv', 2)[corners], placing)
+        arrays['colors'] = colors_of(mesh, colors, corners, vertices)
         thickness = closed.thickness(arrays['positions'], arrays['triangles']) if is_glass else 0.0
         parts.append(Part(arrays, name and (name, round(thickness, 6))))
     return parts
@@ -93,6 +93,21 @@ def layer_of(mesh, placing):
     """The uv set of a placing, or the active one for renders. None if the mesh has none."""
     active = next((each for each in mesh.uv_layers if each.active_render), None)
     return mesh.uv_layers.get(placing.uv_map, active)
+
+
+def colors_of(mesh, name, corners, vertices):
+    """Linear colours of corners, or none. name: of the colours of vertices; "": those for renders; None: none."""
+    all_colors = mesh.color_attributes
+    if name == "" and 0 <= all_colors.render_color_index < len(all_colors):
+        name = all_colors[all_colors.render_color_index].name
+    found = all_colors.get(name) if name else None
+    if found is None:
+        return numpy.empty((0, 4), numpy.float32)
+    values = numbers(found.data, 'color', 4)
+    colors = numpy.clip(values[corners if found.domain == 'CORNER' else vertices[corners]], 0, 1)
+    # The alpha of a Principled BSDF is not theirs.
+    colors[:, 3] = 1
+    return colors
 
 
 def placed(uvs, placing):
@@ -128,6 +143,8 @@ class Collector:
         self.thicknesses = {}
         # The placing of the images of each material, by its name.
         self.placings = {}
+        # The name of the colours of vertices that each material reads, or None.
+        self.color_names = {}
         self.remarks = []
         self.last = None
         # The number of instances of the last depsgraph.
@@ -245,7 +262,7 @@ class Collector:
         return name if content.lamps[name]['intensity'] > 0 else None
 
     def material_of(self, material, content):
-        """(name, whether light passes it, placing of its images)"""
+        """(name, whether light passes it, placing of its images, name of the colours of vertices)"""
         name = material.name_full
         if name not in self.materials:
             for remark in materials.remarks_of(material):
@@ -257,7 +274,17 @@ class Collector:
             if 'gnomon_thickness' in material:
                 self.thicknesses[name] = max(float(material['gnomon_thickness']), 0.0)
             self.placings[name] = self.common_placing(material)
-        return name, self.materials[name]['transmission'] > 0, self.placings[name]
+            node = self.base_color_node(material)
+            self.color_names[name] = None if node is None else materials.color_name(node)
+        return name, self.materials[name]['transmission'] > 0, self.placings[name], self.color_names[name]
+
+    @staticmethod
+    def base_color_node(material):
+        """The node that the base colour of a material comes from."""
+        output = materials.output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+        surface = materials.source_of(output.inputs['Surface']) if output else None
+        socket = surface and next((surface.inputs[name] for name in ('Base Color', 'Color') if name in surface.inputs), None)
+        return materials.source_of(socket) if socket and surface.type in ('BSDF_PRINCIPLED', 'BSDF_DIFFUSE') else None
 
     def common_placing(self, material):
         """The placing of the first image of a material."""
@@ -294,7 +321,9 @@ class Collector:
         return {**values, **self.principled(node, material, content)}
 
     def color_of(self, socket, content):
-        image = image_of(socket)
+        image, node = image_of(socket), materials.source_of(socket)
+        if image is None and node is not None and materials.color_name(node) is not None:
+            return {'base_color': (1.0, 1.0, 1.0)}
         if image is None:
             return {'base_color': tuple(clamped(c) for c in socket.default_value[:3])}
         return {'base_color': (1.0, 1.0, 1.0), 'base_color_texture': self.texture([(image, None)], content)}
@@ -349,6 +378,8 @@ class Collector:
         for socket in (each for each in node.inputs if each.is_linked):
             nodes = materials.upstream(socket, [])
             if any(each.type not in materials.KNOWN_NODES for each in nodes):
+                continue
+            if socket.name == 'Base Color' and materials.color_name(materials.source_of(socket)) is not None:
                 continue
             is_alpha = socket.name == 'Alpha' and image_of(socket) is not None and image_of(socket) == image_of(node.inputs['Base Color'])
             if not is_alpha and (values.get(drawn.get(socket.name)) is None or (socket.name != 'Normal' and image_of(socket) is None)):

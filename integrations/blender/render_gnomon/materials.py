@@ -90,6 +90,13 @@ def uses_color_attribute(material):
         node.type in ('VERTEX_COLOR', 'ATTRIBUTE', 'GROUP') for node in material.node_tree.nodes)
 
 
+def color_name(node):
+    """The name of the colours of vertices that a node reads, "" for those for renders; None if it reads none."""
+    if node.type == 'VERTEX_COLOR':
+        return node.layer_name
+    return node.attribute_name or None if node.type == 'ATTRIBUTE' and node.attribute_type == 'GEOMETRY' else None
+
+
 def absorption(material):
     """(attenuation colour, attenuation distance in metres) of a Volume Absorption at the output; None if there is none."""
     output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None

@@ -134,7 +134,7 @@ class AnimationImporter {
       import_mesh_weights_channel(sampler, parts->index, node_places, animation);
       return;
     }
-    if (parts && parts->collection == "materials" && import_transform_channel(sampler, *parts, animation)) {
+    if (parts && parts->collection == "materials" && import_transform_channel(sampler, *parts, what, animation)) {
       return;
     }
     if (parts && parts->collection == "nodes") {
@@ -196,7 +196,7 @@ class AnimationImporter {
 
   /** \return false if the pointer is not that of a transform of a texture. */
   bool import_transform_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
-                                scene::Animation &animation)
+                                const std::string &what, scene::Animation &animation)
   {
     const std::size_t split = parts.path.find(transform_path);
     if (split == parts.path.npos) {
@@ -212,6 +212,13 @@ class AnimationImporter {
     const auto found = things_.materials.find(parts.index);
     if (found == things_.materials.end()) {
       fail_without_target(parts.index, file_.model.materials.size());
+    }
+    const bool has_normals =
+        input->slot == &scene::Material::normal_texture || input->slot == &scene::Material::coat_normal_texture;
+    if (has_normals && property == "rotation") {
+      // Tangents are made from the transform at rest.
+      warnings_.add(what,
+                    "the image of '" + printable(slot_path) + "' turns, and the directions of its normals do not");
     }
     AnimatedValue value;
     value.target = found->second;

@@ -54,6 +54,9 @@ class DocumentReader {
       model_.scene = indices_.index_into("scenes", at_root("scene"), *value);
     }
     read_extensions();
+    if (const JsonValue *extras = root(extras_key)) {
+      count_foreign_extras(document_, *extras);
+    }
     read_array("scenes", model_.scenes,
                [this](const auto &at, const auto &value, auto &one) { read_scene(at, value, one); });
     read_array("buffers", model_.buffers, read_buffer);

@@ -41,7 +41,7 @@ void read_extras(const Place &place, const std::string &name, const JsonValue &v
     return;
   }
   for (const auto [key, extra] : object) {
-    if (!key.starts_with("gnomon_")) {
+    if (!key.starts_with(own_extra_prefix)) {
       continue;
     }
     std::optional<Model::Extra> read = extra_of(extra);

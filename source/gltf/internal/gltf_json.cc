@@ -30,13 +30,36 @@ std::string Place::label() const
   return gltf::label(kind, name, index);
 }
 
-void Place::warn(std::string_view reason) const
+/** The warnings of the document that \a place is in. */
+static Warnings &warnings_of(const Place &place)
 {
-  const Place *document = this;
+  const Place *document = &place;
   while (document->outer != nullptr) {
     document = document->outer;
   }
-  document->warnings->add_counted(label(), 1, reason);
+  return *document->warnings;
+}
+
+void Place::warn(std::string_view reason) const
+{
+  warnings_of(*this).add_counted(label(), 1, reason);
+}
+
+void count_foreign_extras(const Place &place, const JsonValue &extras)
+{
+  const auto count = [&](const std::string &what) {
+    warnings_of(place).add_foreign_extra(what + "of " + (place.outer == nullptr ? "the document" : place.label()));
+  };
+  JsonObject object;
+  if (extras.get(object) != simdjson::SUCCESS) {
+    count("");
+    return;
+  }
+  for (const auto [key, value] : object) {
+    if (!key.starts_with(own_extra_prefix)) {
+      count('\'' + printable(key) + "' ");
+    }
+  }
 }
 
 void warn_unread_extension(const Place &extensions, std::string_view name)

@@ -125,6 +125,15 @@ inline constexpr std::string_view twice_text = "stands twice in the object; the 
 /** The key of extensions in all objects of glTF. */
 inline constexpr std::string_view extensions_key = "extensions";
 
+/** The start of the keys of Gnomon's own extras. */
+inline constexpr std::string_view own_extra_prefix = "gnomon_";
+
+/** The key of what programs may add to all objects of glTF. */
+inline constexpr std::string_view extras_key = "extras";
+
+/** Counts what programs other than Gnomon have added to the object at \a place. */
+void count_foreign_extras(const Place &place, const JsonValue &extras);
+
 /** A member that read_members did not look for. Names the extensions that it has. */
 void skip_member(const Place &place, const Place &at, const JsonValue &member);
 
@@ -141,6 +150,9 @@ void read_members(const Place &place, const JsonValue &value, const Member<Read>
   for (const auto [key, member] : object_at(place, value)) {
     const Place at{&place, key};
     std::uint64_t bit = 1;
+    if (key == extras_key) {
+      count_foreign_extras(place, member);
+    }
     const bool is_read = ((members.key == key ? (members.read(at, member), true) : (bit <<= 1U, false)) || ...);
     if (!is_read) {
       if (key == extensions_key || place.key == extensions_key) {

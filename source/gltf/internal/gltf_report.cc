@@ -85,15 +85,23 @@ void Warnings::add_counted(std::string_view element, std::uint64_t count, std::s
   entry(element, reason, true).count += count;
 }
 
+/** " and 2 others"; empty if \a count is 0. */
+static std::string and_others(std::uint64_t count)
+{
+  return count == 0 ? "" : " and " + std::to_string(count) + (count == 1 ? " other" : " others");
+}
+
+std::string Warnings::foreign_extras() const
+{
+  return foreign_extra_count_ == 0 ? "" : "extra " + first_foreign_extra_ + and_others(foreign_extra_count_ - 1);
+}
+
 std::vector<std::string> Warnings::messages() const
 {
   std::vector<std::string> result;
   for (const Entry &entry : entries_) {
     std::string message = entry.element;
-    if (entry.is_counted && entry.element_count > 1) {
-      const std::uint64_t others = entry.element_count - 1;
-      message += " and " + std::to_string(others) + (others == 1 ? " other" : " others");
-    }
+    message += entry.is_counted ? and_others(entry.element_count - 1) : "";
     message += ": " + entry.reason;
     if (entry.count > 1) {
       message += " (" + std::to_string(entry.count) + " times)";

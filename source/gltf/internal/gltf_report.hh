@@ -56,6 +56,15 @@ class Warnings {
     return entries_.empty();
   }
 
+  /** Counts an extra of another program, which export_gltf() does not write. \a what: "'key' of node 'a'". No message.
+   */
+  void add_foreign_extra(std::string_view what)
+  {
+    first_foreign_extra_ = foreign_extra_count_++ == 0 ? what : first_foreign_extra_;
+  }
+  /** "extra 'key' of node 'a' and 2 others"; empty: none. */
+  [[nodiscard]] std::string foreign_extras() const;
+
  private:
   struct Entry {
     /** The first element with this message. */
@@ -69,6 +78,8 @@ class Warnings {
   /** In the order of first appearance. */
   std::vector<Entry> entries_;
   std::map<std::pair<std::string, std::string>, std::size_t> index_of_;
+  std::string first_foreign_extra_;
+  std::uint64_t foreign_extra_count_ = 0;
 
   Entry &entry(std::string_view element, std::string_view reason, bool is_counted);
 };

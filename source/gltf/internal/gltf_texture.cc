@@ -17,6 +17,7 @@ namespace gnomon::gltf {
 
 using scene::Handle;
 using scene::Image;
+using scene::Material;
 using scene::MipFilter;
 using scene::Scene;
 using scene::Texture;
@@ -210,9 +211,20 @@ namespace {
 
 struct ColorUse {
   scene::ImageUse use = scene::ImageUse::Color;
-  /** The cover of the first mask. */
+  /** The cover of the first mask that shows a part of the image. */
   scene::MaskCover mask{};
 };
+
+/** Least alpha of the base colour's texels that cover \a mesh. Of vertices with different alphas it is that of their
+ * mean. */
+float texel_cutoff(const scene::Mesh &mesh, const scene::Material &material)
+{
+  double vertex_alpha = mesh.colors.empty() ? 1.0 : 0.0;
+  for (const glm::vec4 &color : mesh.colors) {
+    vertex_alpha += double(color.a) / double(mesh.colors.size());
+  }
+  return float(double(material.alpha_cutoff) / (double(material.alpha) * vertex_alpha));
+}
 
 /** The images that materials of \a scene use for colours. Coverage counts before Color, and Mask before both. */
 std::map<Handle<Image>, ColorUse> color_images(const Scene &scene)
@@ -223,12 +235,23 @@ std::map<Handle<Image>, ColorUse> color_images(const Scene &scene)
       const Texture *texture = scene.textures().find((material.*input.slot).texture);
       if (texture != nullptr && input.is_color) {
         ColorUse &known = images[texture->image];
-        const scene::ImageUse use = scene::use_of(material, input);
-        if (use == scene::ImageUse::Mask && known.mask.cutoff == 0.0F && material.alpha > 0.0F) {
-          known.mask = {material.alpha_cutoff / material.alpha, texture->magnified == scene::TextureFilter::Linear};
-        }
-        known.use = std::max(known.use, use);
+        known.use = std::max(known.use, scene::use_of(material, input));
       }
+    }
+  }
+  const auto base_color =
+      std::ranges::find(scene::texture_inputs, &Material::base_color_texture, &scene::TextureInput::slot);
+  for (const auto &[handle, mesh] : scene.meshes()) {
+    const Material &material = scene.material_of(mesh);
+    const Texture *texture = scene.textures().find(material.base_color_texture.texture);
+    if (texture == nullptr || scene::use_of(material, *base_color) != scene::ImageUse::Mask) {
+      continue;
+    }
+    scene::MaskCover &known = images[texture->image].mask;
+    const float cutoff = texel_cutoff(mesh, material);
+    // Not true of NaN.
+    if (known.cutoff == 0.0F && cutoff > 0.0F && cutoff <= 1.0F) {
+      known = {cutoff, texture->magnified == scene::TextureFilter::Linear};
     }
   }
   return images;

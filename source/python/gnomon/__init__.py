@@ -7,6 +7,7 @@ Units are metres, radians and watts; colours are linear, with Rec. 709 primaries
 import copyreg as _copyreg
 import os as _os
 import tempfile as _tempfile
+import warnings as _warnings
 
 import numpy as _numpy
 
@@ -59,18 +60,27 @@ def _scene_of(data, has_cameras, has_lamps):
     return scene
 
 
+def _warn_of_unused(scene):
+    meshes = {mesh for node in scene.nodes for mesh in node.meshes}
+    used = {"meshes": meshes, "materials": {mesh.material for mesh in meshes}, "lamps": {node.lamp for node in scene.nodes},
+            "cameras": {node.camera for node in scene.nodes}}
+    unused = [f"{len(left)} {kind}" for kind, things in used.items() if (left := set(getattr(scene, kind)) - things)]
+    if unused:
+        _warnings.warn(f"what no node uses is not pickled: {', '.join(unused)}", stacklevel=3)
+
+
 def _reduced(scene):
     if not any(node.meshes for node in scene.nodes):
         if scene.nodes or scene.meshes or scene.materials or scene.lamps or scene.cameras:
             raise ValueError("a scene without a mesh at a node cannot be pickled")
         return Scene, ()
+    _warn_of_unused(scene)
     with _tempfile.TemporaryDirectory() as folder:
         path = _os.path.join(folder, "scene.glb")
-        scene.save(path)
+        scene._save(path)
         with open(path, "rb") as file:
             data = file.read()
     return _scene_of, (data, any(node.camera for node in scene.nodes), any(node.lamp for node in scene.nodes))
 
 
-# Also for copy.deepcopy.
 _copyreg.pickle(Scene, _reduced)

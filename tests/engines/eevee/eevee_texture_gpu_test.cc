@@ -185,6 +185,18 @@ TEST_F(DistantMaskGpuTest, CoversItsShareAtAnyNumberOfSamples)
   }
 }
 
+TEST_F(DistantMaskGpuTest, CoversWhatTheAlphaOfVerticesLeaves)
+{
+  add_leaf(scene::MipFilter::Linear);
+  // The red texels are below the cutoff only with that alpha.
+  test::edit_material(scene, 0, [](scene::Material &material) { material.alpha_cutoff = 0.24F; });
+  scene.edit(scene.meshes().first(),
+             [](scene::Mesh &mesh) { mesh.colors.assign(mesh.positions.size(), glm::vec4(1.0F, 1.0F, 1.0F, 0.8F)); });
+  for (const int sample_count : {1, 4, 16}) {
+    EXPECT_NEAR(mean(sample_count).a, 0.75F, 0.02F) << sample_count;
+  }
+}
+
 TEST_F(DistantMaskGpuTest, CoversItsShareWherePixelsAreAsLargeAsItsPattern)
 {
   // Columns repeat after 4, 2, 1 and half a pixel. The leaf is 40 pixels wide.
