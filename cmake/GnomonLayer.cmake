@@ -23,6 +23,17 @@ function(gnomon_layer NAME)
   target_link_libraries(${TARGET}_headers INTERFACE ${TARGET})
 endfunction()
 
+# gnomon_layer_part(LAYER PART FILE...): objects of files of a layer that are compiled with other options than its other files. The
+# layer has $<TARGET_OBJECTS:gnomon_LAYER_PART> among its files.
+function(gnomon_layer_part LAYER PART)
+  set(TARGET gnomon_${LAYER}_${PART})
+  add_library(${TARGET} OBJECT ${ARGN})
+  gnomon_compile_settings(${TARGET})
+  gnomon_reuse_pch(${TARGET} gnomon_pch)
+  target_include_directories(${TARGET} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(${TARGET} PRIVATE $<TARGET_GENEX_EVAL:gnomon_${LAYER},$<TARGET_PROPERTY:gnomon_${LAYER},LINK_LIBRARIES>>)
+endfunction()
+
 # gnomon_compile_settings(TARGET [TEST]). TEST: code of tests. The address and undefined behaviour sanitizers instrument the
 # libraries and the program, but not this code, which takes half of its compile time. The thread sanitizer must instrument all.
 function(gnomon_compile_settings TARGET)
@@ -38,6 +49,8 @@ function(gnomon_compile_settings TARGET)
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual $<$<CXX_COMPILER_ID:Clang>:-Wno-keyword-macro -Wno-overlength-strings>
     $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
+  # GCC collects garbage from 512 MiB on instead of 128. Compiling takes a twelfth less time, and a seventh more memory.
+  target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>)
   # Tests call this code for minutes, and GCC compiles it as fast as without. Tests themselves take 1.4 times as long to compile, and code
   # for sanitizers 1.7 times by clang. The linker keeps one copy of each inline function, often ours, so that glslang is faster, too.
   if(NOT "TEST" IN_LIST ARGN AND NOT GNOMON_SANITIZE)
@@ -53,9 +66,9 @@ function(gnomon_compile_settings TARGET)
   endif()
 endfunction()
 
-# gnomon_optimise_less(TARGET): for code that lists and prints, and calls other layers. Full optimisation takes a third of its compile time,
-# and makes no picture faster. GCC 13 and later refuse precompiled headers of -O3 for files without the two other options, which -O1 does
-# not set.
+# gnomon_optimise_less(TARGET): for code that lists and prints, reads documents, makes devices and programs, and calls other layers. Full
+# optimisation takes a third of its compile time, and makes no picture faster. GCC 13 and later refuse precompiled headers of -O3 for files
+# without the two other options, which -O1 does not set.
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-munroll-only-small-loops GNOMON_HAS_SMALL_LOOPS)
 function(gnomon_optimise_less TARGET)

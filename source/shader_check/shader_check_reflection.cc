@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <set>
 #include <tuple>
 
 namespace gnomon::shader_check {
@@ -73,15 +75,20 @@ void add_members(const glslang::TType &type, const std::string &name, int offset
   }
 }
 
-/** The members of \a block, by offset. */
+/** The members of a block of \a size_bytes, by offset. */
+Members members_of(const glslang::TType &block, std::uint32_t size_bytes)
+{
+  Members members;
+  add_members(block, "", 0, members);
+  set_sizes(members, size_bytes);
+  std::erase_if(members, [](const gpu::ShaderInterface::Member &member) { return member.name.empty(); });
+  return members;
+}
+
 template <typename Get>
 Members members_of(const glslang::TObjectReflection &block, int /*block_index*/, int /*count*/, Get && /*variable*/)
 {
-  Members members;
-  add_members(*block.getType(), "", 0, members);
-  set_sizes(members, std::uint32_t(block.size));
-  std::erase_if(members, [](const gpu::ShaderInterface::Member &member) { return member.name.empty(); });
-  return members;
+  return members_of(*block.getType(), std::uint32_t(block.size));
 }
 
 #else
@@ -126,14 +133,120 @@ std::uint32_t std140_size(std::uint32_t size_bytes)
   return (size_bytes + 15U) / 16U * 16U;
 }
 
-/** ShaderInterface::Binding::stages of an object that glslang reports. */
-std::uint32_t stages_of(const glslang::TObjectReflection &object)
+/** ShaderInterface::Binding::stages of glslang's \a mask of stages. */
+std::uint32_t stages_of(int mask)
 {
   using gpu::ShaderStage;
-  return ((object.stages & EShLangVertexMask) != 0 ? 1U << unsigned(ShaderStage::Vertex) : 0U) |
-         ((object.stages & EShLangGeometryMask) != 0 ? 1U << unsigned(ShaderStage::Geometry) : 0U) |
-         ((object.stages & EShLangFragmentMask) != 0 ? 1U << unsigned(ShaderStage::Fragment) : 0U);
+  return ((mask & EShLangVertexMask) != 0 ? 1U << unsigned(ShaderStage::Vertex) : 0U) |
+         ((mask & EShLangGeometryMask) != 0 ? 1U << unsigned(ShaderStage::Geometry) : 0U) |
+         ((mask & EShLangFragmentMask) != 0 ? 1U << unsigned(ShaderStage::Fragment) : 0U);
 }
+
+void set_push_constants(int slot, int size_bytes, Members members, gpu::ShaderInterface &interface)
+{
+  interface.push_constant_slot = slot;
+  interface.push_constant_size_bytes = std140_size(std::uint32_t(size_bytes));
+  interface.push_constant_members = std::move(members);
+}
+
+void sort_bindings(gpu::ShaderInterface &interface)
+{
+  std::ranges::sort(interface.bindings, [](const auto &a, const auto &b) {
+    return std::tie(a.kind, a.slot, a.name) < std::tie(b.kind, b.slot, b.name);
+  });
+}
+
+#if GNOMON_GLSLANG_TREE
+
+/** The uniforms and blocks that a linked stage uses. Linking removed the functions without a caller. */
+class UsedSymbols : public glslang::TIntermTraverser {
+ public:
+  std::set<long long> ids;
+
+  bool visitAggregate(glslang::TVisit /*visit*/, glslang::TIntermAggregate *aggregate) override
+  {
+    return aggregate->getOp() != glslang::EOpLinkerObjects;
+  }
+  void visitSymbol(glslang::TIntermSymbol *symbol) override
+  {
+    if (symbol->getQualifier().isUniformOrBuffer()) {
+      ids.insert(symbol->getId());
+    }
+  }
+};
+
+/** Adds \a symbol, which \a stages use. \return false for arrays of blocks, and for arrays and structs outside of
+ * blocks */
+bool add_symbol(const glslang::TIntermSymbol &symbol, std::uint32_t stages, gpu::ShaderInterface &interface)
+{
+  const glslang::TType &type = symbol.getType();
+  const glslang::TQualifier &qualifier = type.getQualifier();
+  const bool is_block = type.getBasicType() == glslang::EbtBlock;
+  if (type.isArray() || (type.isStruct() && !is_block)) {
+    return false;
+  }
+  const bool is_buffer = qualifier.storage == glslang::EvqBuffer;
+  gpu::ShaderInterface::Binding binding;
+  binding.name = text_of(is_block ? type.getTypeName() : symbol.getName());
+  binding.kind = !is_block   ? gpu::BindingKind::Texture
+                 : is_buffer ? gpu::BindingKind::StorageBlock
+                             : gpu::BindingKind::UniformBlock;
+  binding.slot = qualifier.hasBinding() ? int(qualifier.layoutBinding) : -1;
+  binding.stages = stages;
+  for (gpu::ShaderInterface::Binding &known : interface.bindings) {
+    if (known.kind == binding.kind && known.name == binding.name) {
+      known.stages |= stages;
+      return true;
+    }
+  }
+  const bool is_push_constants = is_block && !is_buffer && binding.name == gpu::push_constant_block_name;
+  if (is_push_constants && interface.push_constant_size_bytes > 0) {
+    return true;
+  }
+  if (is_block) {
+    const int size_bytes = glslang::TIntermediate::getBlockSize(type);
+    binding.members = members_of(type, std::uint32_t(size_bytes));
+    if (is_push_constants) {
+      set_push_constants(binding.slot, size_bytes, std::move(binding.members), interface);
+      return true;
+    }
+    binding.size_bytes = is_buffer ? std::uint32_t(size_bytes) : std140_size(std::uint32_t(size_bytes));
+  }
+  interface.bindings.push_back(std::move(binding));
+  return true;
+}
+
+/**
+ * The interface by one walk over each tree. glslang's reflection names all elements of an array of structs at each use
+ * of one, which takes longer than all else. \return nothing if names of elements are needed, which glslang makes
+ */
+std::optional<gpu::ShaderInterface> interface_of_trees(glslang::TProgram &program)
+{
+  gpu::ShaderInterface interface;
+  for (int language = 0; language < EShLangCount; language++) {
+    const glslang::TIntermediate *tree = program.getIntermediate(EShLanguage(language));
+    if (tree == nullptr || tree->getTreeRoot() == nullptr) {
+      continue;
+    }
+    UsedSymbols used;
+    tree->getTreeRoot()->traverse(&used);
+    const glslang::TIntermAggregate *objects = tree->findLinkerObjects();
+    if (objects == nullptr) {
+      continue;
+    }
+    for (const TIntermNode *object : objects->getSequence()) {
+      const glslang::TIntermSymbol *symbol = object->getAsSymbolNode();
+      if (symbol != nullptr && used.ids.contains(symbol->getId()) &&
+          !add_symbol(*symbol, stages_of(1 << language), interface)) {
+        return std::nullopt;
+      }
+    }
+  }
+  sort_bindings(interface);
+  return interface;
+}
+
+#endif
 
 /** Sets ShaderInterface::reads_object and varying_locations. */
 void set_varyings(const Compilation &compilation, gpu::ShaderInterface &interface)
@@ -160,6 +273,11 @@ void set_varyings(const Compilation &compilation, gpu::ShaderInterface &interfac
 
 gpu::ShaderInterface interface_of(glslang::TProgram &program)
 {
+#if GNOMON_GLSLANG_TREE
+  if (std::optional<gpu::ShaderInterface> interface = interface_of_trees(program)) {
+    return *std::move(interface);
+  }
+#endif
   program.buildReflection(reflection_options);
   gpu::ShaderInterface interface;
   const int variable_count = program.getNumUniformVariables();
@@ -168,13 +286,11 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
     const glslang::TObjectReflection &block = program.getUniformBlock(i);
     Members members = members_of(block, i, variable_count, variable);
     if (block.name == gpu::push_constant_block_name) {
-      interface.push_constant_slot = block.getBinding();
-      interface.push_constant_size_bytes = std140_size(std::uint32_t(block.size));
-      interface.push_constant_members = std::move(members);
+      set_push_constants(block.getBinding(), block.size, std::move(members), interface);
       continue;
     }
     interface.bindings.push_back({block.name, gpu::BindingKind::UniformBlock, block.getBinding(),
-                                  std140_size(std::uint32_t(block.size)), std::move(members), stages_of(block)});
+                                  std140_size(std::uint32_t(block.size)), std::move(members), stages_of(block.stages)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
@@ -182,19 +298,17 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
         {block.name, gpu::BindingKind::StorageBlock, block.getBinding(), std::uint32_t(block.size),
          members_of(block, i, program.getNumBufferVariables(),
                     [&](int j) -> const glslang::TObjectReflection & { return program.getBufferVariable(j); }),
-         stages_of(block)});
+         stages_of(block.stages)});
   }
   for (int i = 0; i < variable_count; i++) {
     const glslang::TObjectReflection &uniform = variable(i);
     // Outside of blocks: textures, and plain uniforms. check_slots refuses the latter, because they have no slot.
     if (uniform.index == -1) {
       interface.bindings.push_back(
-          {uniform.name, gpu::BindingKind::Texture, uniform.getBinding(), 0, {}, stages_of(uniform)});
+          {uniform.name, gpu::BindingKind::Texture, uniform.getBinding(), 0, {}, stages_of(uniform.stages)});
     }
   }
-  std::ranges::sort(interface.bindings, [](const auto &a, const auto &b) {
-    return std::tie(a.kind, a.slot, a.name) < std::tie(b.kind, b.slot, b.name);
-  });
+  sort_bindings(interface);
   return interface;
 }
 
@@ -241,7 +355,7 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
     Compilation compilation;
     for (const gpu::ShaderSource &stage : stages) {
       // SPIR-V, because its declarations can be read without glslang's tree.
-      if (!compilation.add(std::make_unique<StageSource>(stage), CheckTarget::OpenGlSpirv, false)) {
+      if (!compilation.add(std::make_unique<StageSource>(stage), CheckTarget::OpenGlSpirv, false, false)) {
         throw gpu::Error("shader '{}', {} stage:\n{}", name, to_string(stage.stage),
                          bounded_lines(stage.name_files(compilation.glslang.log())));
       }

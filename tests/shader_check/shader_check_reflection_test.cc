@@ -213,6 +213,32 @@ void main() { color = texture(sky, view.position) * texture(shadow_maps, vec4(0)
   EXPECT_TRUE(interface.push_constant_members.empty());
 }
 
+TEST(Reflect, ABindingIsReadWhereACalledFunctionOrAGlobalReadsIt)
+{
+  const std::string called = "layout(std140, binding = 1) uniform called_block { vec4 a; };\n";
+  const auto bindings = [&](const std::string &value) {
+    const gpu::ShaderInterface interface = reflected(
+        VERSION + called +
+            "layout(std140, binding = 2) uniform uncalled_block { vec4 b; };\n"
+            "layout(std140, binding = 3) uniform global_block { vec4 c; } instance;\n"
+            "layout(binding = 4) uniform sampler2D pictures[2];\n"
+            "float from_called() { return a.x; }\nfloat from_uncalled() { return b.x; }\nfloat global = instance.c.x;\n"
+            "void main() { gl_Position = vec4(from_called() * global" +
+            value + "); }\n",
+        VERSION + called + "layout(location = 0) out vec4 o;\nvoid main() { o = a; }\n");
+    std::vector<std::string> texts;
+    for (const gpu::ShaderInterface::Binding &binding : interface.bindings) {
+      texts.push_back(fmt::format("{} {} {}", binding.name, binding.slot, binding.stages));
+    }
+    return texts;
+  };
+  std::vector<std::string> expected{"called_block 1 5", "global_block 3 1"};
+  EXPECT_EQ(bindings(""), expected);
+  // glslang says that all stages read an array.
+  expected.push_back("pictures 4 5");
+  EXPECT_EQ(bindings(" + texture(pictures[1], vec2(0)).x"), expected);
+}
+
 TEST(Reflect, KeepsPushConstantsApartWithOffsetsOfTheirMembers)
 {
   for (const std::string instance : {"", " constants"}) {

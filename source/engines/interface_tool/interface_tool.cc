@@ -15,27 +15,7 @@ namespace {
 using namespace gnomon;
 using Entries = std::vector<shader_check::TableEntry>;
 
-Entries eevee_entries()
-{
-  // These two kernels cover both branches of the PCF lookup. Other kernels differ only in constants.
-  constexpr eevee::PcfKernel kernels[] = {{.width = 3}, {.width = 0}};
-  Entries entries;
-  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
-    for (const eevee::Feature features : eevee::shader_variants(declaration)) {
-      for (const eevee::PcfKernel &kernel : kernels) {
-        gpu::ShaderDesc desc = eevee::shader_desc(declaration, features, kernel);
-        if (entries.empty() || entries.back().desc.name != desc.name || entries.back().desc.defines != desc.defines) {
-          entries.push_back({std::uint32_t(features), std::move(desc)});
-        }
-      }
-    }
-  }
-  return entries;
-}
-
-/** The entries of an engine whose variants differ by their features alone: the functions are found by the type of \a
- * declarations.
- */
+/** The functions are found by the type of \a declarations. */
 template <typename Declaration>
 Entries entries_of(std::span<const Declaration> declarations)
 {
@@ -52,7 +32,8 @@ Entries entries_of(std::span<const Declaration> declarations)
 Entries entries_of(std::string_view engine)
 {
   if (engine == "eevee") {
-    return eevee_entries();
+    // The kernel of PCF decides nothing about names: the tests of tables compare other kernels.
+    return entries_of(eevee::shader_declarations());
   }
   if (engine == "unlit") {
     return entries_of(unlit::shader_declarations());

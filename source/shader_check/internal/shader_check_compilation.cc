@@ -12,7 +12,7 @@
 
 namespace gnomon::shader_check {
 
-bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots)
+bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots, bool has_lines)
 {
   target_ = target;
   const bool is_done = glslang.add(*source, target, needs_slots);
@@ -20,7 +20,10 @@ bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, b
   if (sources.back()->has_line_directives()) {
     sources.back()->note_line_directives(GlslangProgram::preprocessed(*sources.back(), target), target);
   }
-  lines.emplace_back(*sources.back()).read(target);
+  lines.emplace_back(*sources.back());
+  if (has_lines) {
+    lines.back().read(target);
+  }
   return is_done;
 }
 

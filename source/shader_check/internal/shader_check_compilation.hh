@@ -21,8 +21,11 @@ struct Compilation {
   /** Parallel to sources; empty until linked. Sources of one stage have facts of their own. */
   std::vector<StageFacts> facts;
 
-  /** Compiles the next stage. The target is the same for all. \a needs_slots: as for GlslangProgram::add(). */
-  bool add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots = true);
+  /**
+   * Compiles the next stage. The target is the same for all. \a needs_slots: as for GlslangProgram::add(). \a
+   * has_lines: whether `lines` are read; without them, facts have no positions.
+   */
+  bool add(std::unique_ptr<StageSource> source, CheckTarget target, bool needs_slots = true, bool has_lines = true);
   /** The sources of one stage: the index of the first, and one behind the last. */
   struct Range {
     std::size_t begin;
