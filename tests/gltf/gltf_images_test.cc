@@ -163,7 +163,7 @@ TEST(GltfImage, AReducedMaskCoversAsMuchWithTheAlphaOfItsVertices)
   // The mean counts where vertices differ, and the factor, too.
   builder.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.8};
   EXPECT_EQ(covered(0.5F / (0.75F * 0.8F)), 1);
-  // Nothing is seen of it.
+  // No texel reaches the cutoff, so that the image keeps no share.
   builder.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.6};
   EXPECT_EQ(covered(0.0F), 4);
 }

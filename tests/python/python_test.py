@@ -352,7 +352,7 @@ class Pictures(unittest.TestCase):
         white = renderer.render()
         colors = numpy.float32([(0.5, 0.25, 1, 1)] * 4)
         mesh.colors = colors
-        # On devices they have 16 bits: half a step of 0.25.
+        # Devices store 16 bits: the tolerance is half a step, relative to 0.25.
         numpy.testing.assert_allclose(renderer.render(), white * colors[0], rtol=4e-5)
         # Two triangles that mirror the image have tangents that split vertices.
         uvs = numpy.float32([(0, 0), (1, 0), (1, 1), (2, 0)])

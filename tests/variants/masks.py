@@ -16,7 +16,7 @@ VALUES = {
     "filter": ["linear", "nearest"],
     # As far above the cutoff as below it, or 0 and 1.
     "alphas": ["near the cutoff", "all or nothing"],
-    # Of the material, and of all vertices, in floats or bytes.
+    # Factors of the alpha: of the material, and of all vertices, in floats or bytes.
     "factor": [1, 1, 0.8],
     "vertex alpha": [None, None, 1.0, 0.8, 204],
     "colour of nothing": [(1, 0, 0), (0, 0, 0), (1, 1, 1)],
@@ -60,7 +60,7 @@ def check(program, random, of):
         # The least alpha of texels that are covered is below 1.
         of["cutoff"] = min(of["cutoff"], 0.5) if min(of["factor"], vertex_alpha) < 1 else of["cutoff"]
         cutoff = of["cutoff"] / (of["factor"] * vertex_alpha)
-    # Where vertices have an alpha, others are covered than without it.
+    # An alpha of vertices covers other texels, so that their alphas must be nearer to the cutoff.
     distance = min(cutoff, 1 - cutoff) / (4 if vertex_alpha < 1 else 1)
     is_near = of["mode"] == "MASK" and of["alphas"] == "near the cutoff"
     low, high = (cutoff - distance, cutoff + distance) if is_near else (0, 1)

@@ -249,7 +249,7 @@ std::map<Handle<Image>, ColorUse> color_images(const Scene &scene)
     }
     scene::MaskCover &known = images[texture->image].mask;
     const float cutoff = texel_cutoff(mesh, material);
-    // Not true of NaN.
+    // The comparisons are false for NaN.
     if (known.cutoff == 0.0F && cutoff > 0.0F && cutoff <= 1.0F) {
       known = {cutoff, texture->magnified == scene::TextureFilter::Linear};
     }

@@ -32,13 +32,13 @@ namespace gnomon::scene {
                  : std::optional(std::size_t(std::ranges::find_if_not(values, is_allowed) - values.begin()));
 }
 
-/** Of those with a component that is not finite. */
+/** The first index of a value with a component that is not finite. */
 [[nodiscard]] std::optional<std::size_t> first_infinite(const auto &values)
 {
   return first_not(values, [](float number) { return std::abs(number) <= std::numeric_limits<float>::max(); });
 }
 
-/** Of those with a component that is not from 0 to 1. */
+/** The first index of a colour with a component that is not from 0 to 1. */
 [[nodiscard]] std::optional<std::size_t> first_beyond_one(const auto &colors)
 {
   // One operation without branches; both are false for NaN.
