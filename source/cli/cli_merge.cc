@@ -138,6 +138,12 @@ glm::ivec2 samples_of(const std::string &path, const ExrPart &part)
   return range;
 }
 
+bool is_whole(const std::string &path, const ExrPart &part)
+{
+  return part.size_px == part.whole_size_px && metadata_value(part.metadata, range_metadata).empty() &&
+         share_of(path, part) >= 1.0;
+}
+
 /** \throws std::runtime_error if both parts contain a sample of a pixel. */
 void check_disjoint(const std::string &path, const ExrPart &part, const std::string &other_path, const ExrPart &other)
 {
@@ -251,6 +257,9 @@ ExrPart merge_parts(const std::vector<std::string> &paths)
   std::int64_t pixel_count = 0;
   for (std::size_t i = 0; i < paths.size(); i++) {
     headers.push_back(read_exr_part(paths[i], ExrContent::Header));
+    if (paths.size() > 1 && is_whole(paths[i], headers[i])) {
+      throw std::runtime_error(fmt::format("{}: is a whole picture, not a part", paths[i]));
+    }
     check_same_picture(paths[i], headers[i], paths.front(), headers.front());
     for (std::size_t other = 0; other < i; other++) {
       check_disjoint(paths[other], headers[other], paths[i], headers[i]);

@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 
@@ -170,7 +172,7 @@ WorkPlan read_plan(const std::filesystem::path &path, const std::string &program
     output::require_readable(path);
     std::ifstream file(path);
     if (!file) {
-      throw std::runtime_error("cannot be read");
+      throw std::runtime_error(fmt::format("cannot be read: {}", std::strerror(errno)));
     }
     const json document = json::parse(file);
     document.at("program").get_to(plan.program);

@@ -326,6 +326,18 @@ TEST_F(ExrPictureTest, APartWithoutAChecksumIsRead)
   EXPECT_EQ(part.channels.at("G"), std::vector<float>(8, 2.0F));
 }
 
+TEST_F(ExrPictureTest, AWholePictureIsNoPart)
+{
+  cli::ExrPart part{{3, 4}, {3, 2}, {0, 0}, {{"R", std::vector<float>(6)}}, {}};
+  cli::write_exr_part(folder / "a.exr", part);
+  part.size_px.y = 4;
+  part.channels["R"].resize(12);
+  cli::write_exr_part(folder / "b.exr", part);
+  const test::Finished merged = run("merge a.exr b.exr -o merged.exr");
+  EXPECT_EQ(merged.status, 1);
+  EXPECT_NE(merged.err.find("b.exr: is a whole picture, not a part"), std::string::npos) << merged.err;
+}
+
 TEST_F(ExrPictureTest, PartsOfSeveralDevicesAreJoinedAndNamed)
 {
   const auto write_half = [&](const std::string &name, int first_row, const std::string &device) {

@@ -256,6 +256,7 @@ TEST_F(CliTest, APipeOrDeviceIsRefusedWhereAFileIsRead)
   std::filesystem::permissions(folder / "piped.sh", std::filesystem::perms::owner_all);
   EXPECT_NE(run("shaders check", folder / "piped.sh").err.find("no JSON: "), std::string::npos);
   EXPECT_NE(run("merge --plan .").err.find(".: not a plan: is a folder"), std::string::npos);
+  EXPECT_NE(run("merge --plan missing.json").err.find("cannot be read: No such file or directory"), std::string::npos);
 }
 
 TEST_F(CliTest, InvalidDebugViewIsWrongUsage)

@@ -47,6 +47,9 @@ TEST(GltfFile, FilesOfOtherProgramsAreNamedWithAdvice)
     EXPECT_HAS(error, std::string("file: is of the format ") + format + ", and not glTF 2.0: ");
     EXPECT_HAS(error, "File > Export > glTF 2.0");
   }
+  for (const std::string picture : {"v/1\x01", "\x89PNG\r\n", "\xFF\xD8\xFF", "#?RADIANCE\n"}) {
+    EXPECT_HAS(import_error(picture, "a.exr"), "file: is a picture, and not glTF 2.0");
+  }
   // The content decides.
   EXPECT_EQ(import_error(triangle_scene().gltf(), "a.blend"), "");
 }

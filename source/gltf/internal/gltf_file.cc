@@ -176,6 +176,10 @@ void refuse_others(const std::filesystem::path &path, ByteSpan bytes)
   const std::string_view first(reinterpret_cast<const char *>(bytes.data()), std::min<std::size_t>(bytes.size(), 32));
   const auto is_first = [](char c) { return c == '{' || c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
   const bool is_json = !first.empty() && is_first(first.front());
+  const auto pictures = {"v/1\x01", "\x89PNG", "\xff\xd8\xff", "#?RADIANCE", "#?RGBE"};
+  if (std::ranges::any_of(pictures, [&](std::string_view magic) { return first.starts_with(magic); })) {
+    throw Fault("file", "is a picture, and not glTF 2.0");
+  }
   for (const Other &other : others) {
     const bool is_known = !other.magic.empty() && first.starts_with(other.magic);
     if (is_known || (extension == other.extension && !is_json)) {
