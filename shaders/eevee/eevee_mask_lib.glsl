@@ -64,7 +64,7 @@ bool is_pixel_cut_out(float mask_cutoff)
   vec2 offset_px = is_small ? mask_offset_px(across, up) * clamp(12.0 * (level - 0.87), 0.0, 1.0) : vec2(0.0);
   vec2 place_uv = surface_uv + (offset_px.x * across + offset_px.y * up) / texels;
   bool is_open = factor * textureLod(base_color_texture, place_uv, 0.0).a < mask_cutoff;
-  // Colours of vertices are often stored in bytes, and those that are interpolated between ones are ones but for their rounding.
+  // An alpha of vertices of 1 may be below 1 by the rounding of a byte. A smaller one covers other texels than the levels store.
   if (!is_small || factor < 1.0 - 1.0 / 256.0) {
     return is_open;
   }

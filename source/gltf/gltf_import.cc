@@ -233,7 +233,8 @@ class Importer {
   Handle<Node> import_node(int index, Handle<Node> parent, const glm::dmat4 &parent_from_node, const glm::dmat4 &world)
   {
     if (!is_usable(world) || !is_usable(parent_from_node)) {
-      warnings_.add_counted(node_label(index), 1, "left out: its matrix is not finite or reaches beyond 1e12 m");
+      warnings_.add_counted(node_label(index), 1,
+                            "left out: its own matrix or that to the world is not finite or reaches beyond 1e12 m");
       lost_node_count_++;
       return {};
     }
@@ -297,8 +298,9 @@ class Importer {
                        const glm::dmat4 &world)
   {
     if (!is_usable(world) || !is_usable(parent_from_node)) {
-      warnings_.add_counted(node_label(index), 1,
-                            "instance left out: its matrix is not finite or reaches beyond 1e12 m");
+      warnings_.add_counted(
+          node_label(index), 1,
+          "instance left out: its own matrix or that to the world is not finite or reaches beyond 1e12 m");
       return;
     }
     Node node;

@@ -136,9 +136,10 @@ Fields<Material> with_textures(Fields<Material> fields)
 void add_tangents(scene::Mesh &mesh)
 {
   mesh.tangents.clear();
-  const bool is_whole = !mesh.uvs.empty() && mesh.uvs.size() == mesh.positions.size() &&
-                        mesh.normals.size() == mesh.positions.size() &&
-                        std::ranges::all_of(mesh.indices, [&](auto index) { return index < mesh.positions.size(); });
+  const std::size_t count = mesh.positions.size();
+  bool is_whole = !mesh.uvs.empty() && mesh.normals.size() == count &&
+                  std::ranges::all_of(mesh.indices, [&](auto index) { return index < count; });
+  scene::for_each_stream(mesh, [&](const auto &stream) { is_whole &= stream.empty() || stream.size() == count; });
   // Scene::add refuses a mesh whose arrays have different lengths.
   if (is_whole) {
     scene::make_tangents(mesh, {});

@@ -284,8 +284,13 @@ void save(const ScenePtr &scene, const std::filesystem::path &path)
 /** The same, with a warning of what the scene's file has and the new one has not. */
 void save_with_warning(const ScenePtr &scene, const std::filesystem::path &path)
 {
-  // Before the file is replaced.
-  const std::string left_out = gltf::left_out_of_export(scene->scene.path);
+  std::string left_out;
+  {
+    // Before the file is replaced.
+    const Reading reading(scene);
+    const py::gil_scoped_release unlocked;
+    left_out = gltf::left_out_of_export(scene->scene.path);
+  }
   save(scene, path);
   const std::string text = "the scene is saved without its " + left_out;
   if (!left_out.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) {

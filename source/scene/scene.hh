@@ -238,7 +238,10 @@ class Scene {
    * ascending order. \pre the Layout has not changed since. \throws StaleHandle
    */
   [[nodiscard]] std::vector<VertexRange> changed_vertices(Handle<Mesh> mesh, Revision since) const;
-  /** Sets Node::parent_from_node without copying the node. */
+  /**
+   * Sets Node::parent_from_node without copying the node. \throws StaleHandle; InvalidEdit if the matrix is not affine
+   * or has a value beyond ±1e12. The scene is then unchanged.
+   */
   void set_transform(Handle<Node> node, const glm::dmat4 &parent_from_node);
   /**
    * Makes \a node, with its descendants, the last child of \a parent, or a root if \a parent is an invalid handle. Its

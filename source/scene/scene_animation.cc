@@ -215,6 +215,7 @@ void pose_node(Scene &scene, const AnimatedNode &animated, double seconds)
     animated.scale_track->evaluate(seconds, {&scale.x, 3});
   }
   if (animated.translation_track || animated.rotation_track || animated.scale_track) {
+    // A pose goes on where a file's node at rest is left out: interpolated values may be large for a moment.
     glm::dmat4 parent_from_node =
         glm::translate(glm::dmat4(1.0), translation) * glm::mat4_cast(rotation) * glm::scale(glm::dmat4(1.0), scale);
     for (int column = 0; column < 4; column++) {

@@ -94,7 +94,7 @@ void check_transform(const std::string &name, const glm::dmat4 &matrix)
     for (int row = 0; row < 4; row++) {
       // False for NaN too.
       if (const double value = matrix[column][row]; !(std::abs(value) <= number_max)) {
-        refuse("node", name, "its matrix has {:g} in row {} and column {}, which is not {}", value, row, column,
+        refuse("node", name, "its matrix has {} in row {} and column {}, which is not {}", value, row, column,
                range_text({.name = "matrix", .min = -number_max}));
       }
       if (row == 3 && matrix[column][3] != (column == 3 ? 1.0 : 0.0)) {

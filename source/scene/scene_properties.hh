@@ -956,7 +956,7 @@ struct Node {
   enum class Aspect { Name, Transform, Content, Visibility, Shadow, Count };
 
   std::string name{};
-  /** Affine, without absolute values above number_max; may be singular, sheared or mirrored. */
+  /** Affine, without absolute values above 1e12 (number_max); may be singular, sheared or mirrored. */
   glm::dmat4 parent_from_node{1.0};
   /** Meshes that are drawn at the node. */
   std::vector<Handle<Mesh>> meshes{};

@@ -220,7 +220,8 @@ TEST(GltfNodes, MatrixOutOfFloatIsLeftOut)
   const Scene scene = import(builder);
   EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene,
-                 "node 'far' and 2 others: left out: its matrix is not finite or reaches beyond 1e12 m (3 times)");
+                 "node 'far' and 2 others: left out: its own matrix or that to the world is not finite or reaches "
+                 "beyond 1e12 m (3 times)");
 }
 
 TEST(GltfNodes, ObjectBeyondTheWorldIsLeftOut)

@@ -118,13 +118,14 @@ class Scenes(unittest.TestCase):
         scene.add_mesh(mesh.positions, mesh.normals, mesh.triangles, name="spare")
         scene.add_material(name="spare")
         scene.add_lamp(name="spare")
+        scene.add_surface_function(name="spare", text="void surface(SurfaceInputs inputs, inout StandardSurface result) {}")
         again = copy.deepcopy(scene)
-        for names in ("meshes", "materials", "lamps", "cameras"):
+        for names in ("meshes", "materials", "lamps", "cameras", "surface_functions"):
             self.assertEqual([each.name for each in getattr(again, names)], [each.name for each in getattr(scene, names)])
         again.meshes[0].positions = 2 * mesh.positions
         again.lamps[-1].name = "other"
         self.assertEqual((mesh.positions.max(), scene.lamps[-1].name), (9, "spare"))
-        with self.assertWarnsRegex(UserWarning, "no node uses is not pickled: 1 meshes, 1 materials, 1 lamps$"):
+        with self.assertWarnsRegex(UserWarning, "no node uses is not pickled: 1 meshes, 1 materials, 1 lamps, 1 surface functions$"):
             pickle.dumps(scene)
         scene.remove(scene.nodes[0])
         with self.assertRaisesRegex(ValueError, "without a mesh"):
@@ -358,6 +359,8 @@ class Pictures(unittest.TestCase):
         uvs = numpy.float32([(0, 0), (1, 0), (1, 1), (2, 0)])
         other = scene.add_mesh(mesh.positions, mesh.normals, mesh.triangles, uvs, colors=colors[:, ::-1], material=mesh.material)
         self.assertEqual(other.colors.tolist(), [colors[0, ::-1].tolist()] * len(other.positions))
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "2 colours for 4 positions"):
+            scene.add_mesh(mesh.positions, mesh.normals, mesh.triangles, uvs, colors=colors[:2])
 
     def test_radiance_is_that_of_the_closed_form(self):
         renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)

@@ -222,9 +222,10 @@ TEST(Reflect, ABindingIsReadWhereACalledFunctionOrAGlobalReadsIt)
             "layout(std140, binding = 2) uniform uncalled_block { vec4 b; };\n"
             "layout(std140, binding = 3) uniform global_block { vec4 c; } instance;\n"
             "layout(binding = 4) uniform sampler2D pictures[2];\n"
+            "layout(binding = 5) uniform sampler2D dead;\nconst bool is_alive = false;\n"
             "float from_called() { return a.x; }\nfloat from_uncalled() { return b.x; }\nfloat global = instance.c.x;\n"
-            "void main() { gl_Position = vec4(from_called() * global" +
-            value + "); }\n",
+            "void main()\n{\n  gl_Position = vec4(from_called() * global" +
+            value + ");\n  if (is_alive) { gl_Position += texture(dead, vec2(0)); }\n}\n",
         VERSION + called + "layout(location = 0) out vec4 o;\nvoid main() { o = a; }\n");
     std::vector<std::string> texts;
     for (const gpu::ShaderInterface::Binding &binding : interface.bindings) {

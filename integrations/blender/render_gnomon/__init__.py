@@ -272,8 +272,9 @@ class Export:
     def choose_colors(self):
         """The exporter writes the colours for renders, whichever a material reads."""
         for mesh in (each for each in bpy.data.meshes if each.library is None and each.color_attributes):
-            nodes = [node for each in mesh.materials if materials.uses_color_attribute(each) for node in each.node_tree.nodes]
-            found = list(dict.fromkeys(name for node in nodes if (name := materials.color_name(node)) and name in mesh.color_attributes))
+            names = [materials.base_color_name(each) for each in mesh.materials if each is not None]
+            colors = [materials.colors_of(mesh, name) for name in names if name is not None]
+            found = list(dict.fromkeys(each.name for each in colors if each is not None))
             if found:
                 self.temporary.set(mesh.color_attributes, 'render_color_index', mesh.color_attributes.find(found[0]))
             if len(found) > 1:

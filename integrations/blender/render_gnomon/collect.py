@@ -51,8 +51,10 @@ def matrix_of(matrix):
 
 
 def numbers(collection, attribute, width, kind=numpy.float32):
+    """Values of a collection; 0 for those that are not finite, which a scene refuses."""
     values = numpy.empty(width * len(collection), kind)
     collection.foreach_get(attribute, values)
+    numpy.nan_to_num(values, copy=False, posinf=0, neginf=0)
     return values.reshape(-1, width) if width > 1 else values
 
 
@@ -96,11 +98,8 @@ def layer_of(mesh, placing):
 
 
 def colors_of(mesh, name, corners, vertices):
-    """Linear colours of corners, or none. name: of the colours of vertices; "": those for renders; None: none."""
-    all_colors = mesh.color_attributes
-    if name == "" and 0 <= all_colors.render_color_index < len(all_colors):
-        name = all_colors[all_colors.render_color_index].name
-    found = all_colors.get(name) if name else None
+    """Linear colours of corners, or none. name: of materials.colors_of; None: none."""
+    found = None if name is None else materials.colors_of(mesh, name)
     if found is None:
         return numpy.empty((0, 4), numpy.float32)
     values = numbers(found.data, 'color', 4)
@@ -246,6 +245,9 @@ class Collector:
         if key not in self.meshes:
             mesh = thing.to_mesh()
             self.meshes[key] = [] if mesh is None or not mesh.polygons else parts_of(mesh, names)
+            for name, _, _, colors in names if mesh else ():
+                if colors is not None and materials.colors_of(mesh, colors) is None:
+                    self.remark(f"mesh '{mesh.name}': it has no colours of vertices '{colors}', which the material '{name}' reads")
             thing.to_mesh_clear()
         return key if self.meshes[key] else None
 
@@ -274,17 +276,8 @@ class Collector:
             if 'gnomon_thickness' in material:
                 self.thicknesses[name] = max(float(material['gnomon_thickness']), 0.0)
             self.placings[name] = self.common_placing(material)
-            node = self.base_color_node(material)
-            self.color_names[name] = None if node is None else materials.color_name(node)
+            self.color_names[name] = materials.base_color_name(material)
         return name, self.materials[name]['transmission'] > 0, self.placings[name], self.color_names[name]
-
-    @staticmethod
-    def base_color_node(material):
-        """The node that the base colour of a material comes from."""
-        output = materials.output_of(material.node_tree) if material.use_nodes and material.node_tree else None
-        surface = materials.source_of(output.inputs['Surface']) if output else None
-        socket = surface and next((surface.inputs[name] for name in ('Base Color', 'Color') if name in surface.inputs), None)
-        return materials.source_of(socket) if socket and surface.type in ('BSDF_PRINCIPLED', 'BSDF_DIFFUSE') else None
 
     def common_placing(self, material):
         """The placing of the first image of a material."""
@@ -321,8 +314,8 @@ class Collector:
         return {**values, **self.principled(node, material, content)}
 
     def color_of(self, socket, content):
-        image, node = image_of(socket), materials.source_of(socket)
-        if image is None and node is not None and materials.color_name(node) is not None:
+        image = image_of(socket)
+        if image is None and materials.color_name(socket) is not None:
             return {'base_color': (1.0, 1.0, 1.0)}
         if image is None:
             return {'base_color': tuple(clamped(c) for c in socket.default_value[:3])}
@@ -379,7 +372,7 @@ class Collector:
             nodes = materials.upstream(socket, [])
             if any(each.type not in materials.KNOWN_NODES for each in nodes):
                 continue
-            if socket.name == 'Base Color' and materials.color_name(materials.source_of(socket)) is not None:
+            if socket.name == 'Base Color' and materials.color_name(socket) is not None:
                 continue
             is_alpha = socket.name == 'Alpha' and image_of(socket) is not None and image_of(socket) == image_of(node.inputs['Base Color'])
             if not is_alpha and (values.get(drawn.get(socket.name)) is None or (socket.name != 'Normal' and image_of(socket) is None)):

@@ -15,14 +15,20 @@ def output_of(tree):
     return next((node for node in outputs if node.is_active_output), None)
 
 
+def link_of(socket):
+    """The link to a socket, beyond reroutes; None if it is not linked."""
+    while socket.is_linked:
+        link = socket.links[0]
+        if link.from_node.type != 'REROUTE':
+            return link
+        socket = link.from_node.inputs[0]
+    return None
+
+
 def source_of(socket):
     """The node that a socket is linked to, beyond reroutes; None if it is not linked."""
-    while socket.is_linked:
-        node = socket.links[0].from_node
-        if node.type != 'REROUTE':
-            return node
-        socket = node.inputs[0]
-    return None
+    link = link_of(socket)
+    return link.from_node if link else None
 
 
 def upstream(socket, seen):
@@ -90,11 +96,31 @@ def uses_color_attribute(material):
         node.type in ('VERTEX_COLOR', 'ATTRIBUTE', 'GROUP') for node in material.node_tree.nodes)
 
 
-def color_name(node):
-    """The name of the colours of vertices that a node reads, "" for those for renders; None if it reads none."""
+def color_name(socket):
+    """The name of the colours of vertices that a socket is linked to, "" for those for renders; None if to others."""
+    link = link_of(socket)
+    if link is None or link.from_socket.name != 'Color':
+        return None
+    node = link.from_node
     if node.type == 'VERTEX_COLOR':
         return node.layer_name
     return node.attribute_name or None if node.type == 'ATTRIBUTE' and node.attribute_type == 'GEOMETRY' else None
+
+
+def base_color_name(material):
+    """The same of the base colour of a material."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    surface = source_of(output.inputs['Surface']) if output else None
+    name = {'BSDF_PRINCIPLED': 'Base Color', 'BSDF_DIFFUSE': 'Color'}.get(surface.type) if surface else None
+    return color_name(surface.inputs[name]) if name else None
+
+
+def colors_of(mesh, name):
+    """The colours of vertices of a mesh by their name, or those for renders if it is ""; None if the mesh has none."""
+    all_colors = mesh.color_attributes
+    if name == "" and 0 <= all_colors.render_color_index < len(all_colors):
+        return all_colors[all_colors.render_color_index]
+    return all_colors.get(name) if name else None
 
 
 def absorption(material):

@@ -47,8 +47,12 @@ void Place::warn(std::string_view reason) const
 
 void count_foreign_extras(const Place &place, const JsonValue &extras)
 {
-  const auto count = [&](const std::string &what) {
-    warnings_of(place).add_foreign_extra(what + "of " + (place.outer == nullptr ? "the document" : place.label()));
+  Warnings &warnings = warnings_of(place);
+  const auto count = [&](std::string_view key) {
+    warnings.add_foreign_extra([&] {
+      return (key.empty() ? "" : '\'' + printable(key) + "' ") + "of " +
+             (place.outer == nullptr ? "the document" : place.label());
+    });
   };
   JsonObject object;
   if (extras.get(object) != simdjson::SUCCESS) {
@@ -57,7 +61,7 @@ void count_foreign_extras(const Place &place, const JsonValue &extras)
   }
   for (const auto [key, value] : object) {
     if (!key.starts_with(own_extra_prefix)) {
-      count('\'' + printable(key) + "' ");
+      count(key);
     }
   }
 }

@@ -56,11 +56,16 @@ class Warnings {
     return entries_.empty();
   }
 
-  /** Counts an extra of another program, which export_gltf() does not write. \a what: "'key' of node 'a'". No message.
+  /**
+   * Counts an extra of another program, which export_gltf() does not write. No message. \a text: called for the first,
+   * returns "'key' of node 'a'".
    */
-  void add_foreign_extra(std::string_view what)
+  template <typename Text>
+  void add_foreign_extra(Text &&text)
   {
-    first_foreign_extra_ = foreign_extra_count_++ == 0 ? what : first_foreign_extra_;
+    if (foreign_extra_count_++ == 0) {
+      first_foreign_extra_ = text();
+    }
   }
   /** "extra 'key' of node 'a' and 2 others"; empty: none. */
   [[nodiscard]] std::string foreign_extras() const;

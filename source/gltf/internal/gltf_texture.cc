@@ -211,7 +211,7 @@ namespace {
 
 struct ColorUse {
   scene::ImageUse use = scene::ImageUse::Color;
-  /** The cover of the first mask that shows a part of the image. */
+  /** The cover of the first mesh that shows a part of the image. */
   scene::MaskCover mask{};
 };
 
@@ -241,6 +241,7 @@ std::map<Handle<Image>, ColorUse> color_images(const Scene &scene)
   }
   const auto base_color =
       std::ranges::find(scene::texture_inputs, &Material::base_color_texture, &scene::TextureInput::slot);
+  // The importer makes materials for meshes alone.
   for (const auto &[handle, mesh] : scene.meshes()) {
     const Material &material = scene.material_of(mesh);
     const Texture *texture = scene.textures().find(material.base_color_texture.texture);

@@ -62,9 +62,11 @@ def _scene_of(data, has_cameras, has_lamps):
 
 def _warn_of_unused(scene):
     meshes = {mesh for node in scene.nodes for mesh in node.meshes}
-    used = {"meshes": meshes, "materials": {mesh.material for mesh in meshes}, "lamps": {node.lamp for node in scene.nodes},
-            "cameras": {node.camera for node in scene.nodes}}
-    unused = [f"{len(left)} {kind}" for kind, things in used.items() if (left := set(getattr(scene, kind)) - things)]
+    used_materials = {mesh.material for mesh in meshes}
+    used = {"meshes": meshes, "materials": used_materials, "lamps": {node.lamp for node in scene.nodes},
+            "cameras": {node.camera for node in scene.nodes},
+            "surface functions": {material.surface_function for material in used_materials if material is not None}}
+    unused = [f"{len(left)} {kind}" for kind, things in used.items() if (left := set(getattr(scene, kind.replace(" ", "_"))) - things)]
     if unused:
         _warnings.warn(f"what no node uses is not pickled: {', '.join(unused)}", stacklevel=3)
 

@@ -383,14 +383,14 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
   constexpr double far = 1e18;
   glm::dvec3 low = glm::clamp(glm::dvec3(bounds_ws_.min), -far, far);
   glm::dvec3 high = glm::clamp(glm::dvec3(bounds_ws_.max), -far, far);
-  // Sets low and high to the places that need probes at distances of edge.
-  const auto extend = [&](double edge) {
+  // Sets low and high for probes at distances of edge. The outermost probes are up to one edge within them.
+  const auto set_ends = [&](double edge) {
     for (int axis = 0; axis < 3 && !points.empty(); axis++) {
       std::vector<double> lows;
       std::vector<double> highs;
       for (const SurfacePoint &point : points) {
         const auto place = double(point.position_ws[axis]);
-        // Probes are at most 0.75 edge within these ends. A surface that faces out of the box needs one outside.
+        // A surface may be 0.75 edge outside of the probes. One that faces out of the box needs a probe outside.
         const double outward = std::clamp(3.0 * double(point.normal_ws[axis]), -0.75, 0.75);
         constexpr double margin = 0.25;
         lows.push_back(place - edge * (margin + std::max(-outward, 0.0)));
@@ -404,7 +404,7 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
       high[axis] = *(highs.end() - 1 - left_out);
     }
   };
-  extend(0.0);
+  set_ends(0.0);
   const auto largest = [](const glm::dvec3 &v) { return std::max({v.x, v.y, v.z}); };
   const double magnitude = largest(glm::max(glm::abs(low), glm::abs(high)));
   const glm::dvec3 size = high - low;
@@ -415,11 +415,11 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
   int level = int(std::ceil(levels_per_octave * std::log2(edge_min)));
   for (;; level++) {
     box.edge = edge_of(level);
-    extend(box.edge);
+    set_ends(box.edge);
     box.first = glm::ivec3(glm::ceil(low / box.edge - place_offset));
     glm::ivec3 last(glm::floor(high / box.edge - place_offset));
     for (int axis = 0; axis < 3; axis++) {
-      // A plane has probes at both of its sides.
+      // A plane has two layers of probes.
       if (last[axis] <= box.first[axis]) {
         box.first[axis] = int(std::floor(0.5 * (low[axis] + high[axis]) / box.edge - place_offset));
         last[axis] = box.first[axis] + 1;
