@@ -351,7 +351,7 @@ class Objects(ExportTest):
         keyed.shape_key_add(name='base')
         before = data_blocks()
         gather = importlib.import_module('io_scene_gltf2.blender.exp.gltf2_blender_gather')
-        with unittest.mock.patch.object(gather, 'gather_gltf2', side_effect=ValueError):
+        with unittest.mock.patch.object(gather, 'gather_gltf2', side_effect=ValueError('planned by a test')):
             with self.assertRaises(RuntimeError):
                 File()
         bpy.ops.wm.save_as_mainfile(filepath=f"{FOLDER}/failed.blend", copy=True)
