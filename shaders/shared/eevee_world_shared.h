@@ -90,7 +90,7 @@ SHARED_FUNCTION float world_mirror_reach_sq(float solid_angle)
  */
 SHARED_FUNCTION float world_probe_weight(float height)
 {
-  return min(max(2.0f * height, 0.02f), 1.0f);
+  return min(max(2.0f * height, 0.001f), 1.0f);
 }
 
 /**

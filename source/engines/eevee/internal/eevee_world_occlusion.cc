@@ -543,14 +543,17 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
     }
   }
   const bool has_seen = std::ranges::any_of(probes, [](const Weighted &probe) { return probe.weight > 0.0F; });
-  // The others, such as those behind a wall or within a body, have the mean of their neighbours.
-  for (bool is_changed = has_seen; is_changed;) {
+  // A probe that a seen neighbour sees has its own parts. The others, such as those behind a wall or within a body,
+  // have the mean of their neighbours.
+  bool are_neighbours_seen = true;
+  for (bool is_changed = has_seen; is_changed; are_neighbours_seen = false) {
     is_changed = false;
     const std::vector<Weighted> before = probes;
     for (std::size_t i = 0; i < probes.size(); i++) {
       Light sum;
       float count = 0.0F;
-      for (int side = 0; side < 6 && before[i].weight == 0.0F; side++) {
+      bool is_open = false;
+      for (int side = 0; side < 6 && before[i].weight == 0.0F && !is_open; side++) {
         glm::ivec3 at = place_of(i);
         at[side / 2] += side % 2 == 0 ? 1 : -1;
         const bool is_in = at[side / 2] >= 0 && at[side / 2] < count_[side / 2];
@@ -558,10 +561,14 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
           sum.positive += before[box.index(at)].parts.positive;
           sum.negative += before[box.index(at)].parts.negative;
           count += 1.0F;
+          const glm::vec3 start(box.position_ws(at));
+          const glm::vec3 along = glm::vec3(box.position_ws(place_of(i))) - start;
+          is_open = are_neighbours_seen && casters_.trace(start, along, false, 1.0F) == RayHit::None;
         }
       }
       if (count > 0.0F) {
-        probes[i] = {{sum.positive / count, sum.negative / count}, unseen_weight};
+        const Light mean{sum.positive / count, sum.negative / count};
+        probes[i] = {is_open ? box.probes[i]->parts : mean, unseen_weight};
         is_changed = true;
       }
     }
