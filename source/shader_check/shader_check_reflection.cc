@@ -159,8 +159,8 @@ void sort_bindings(gpu::ShaderInterface &interface)
 #if GNOMON_GLSLANG_TREE
 
 /**
- * The uniforms and blocks that a linked stage uses, as glslang's reflection finds them: not in a branch whose condition
- * is constant and false. Linking removed the functions without a caller.
+ * The uniforms and blocks that a linked stage uses. As in glslang's reflection, branches that are never taken count.
+ * Linking removed the functions without a caller.
  */
 class UsedSymbols : public glslang::TIntermTraverser {
  public:
@@ -169,18 +169,6 @@ class UsedSymbols : public glslang::TIntermTraverser {
   bool visitAggregate(glslang::TVisit /*visit*/, glslang::TIntermAggregate *aggregate) override
   {
     return aggregate->getOp() != glslang::EOpLinkerObjects;
-  }
-  bool visitSelection(glslang::TVisit /*visit*/, glslang::TIntermSelection *selection) override
-  {
-    const glslang::TIntermConstantUnion *condition = selection->getCondition()->getAsConstantUnion();
-    if (condition == nullptr) {
-      return true;
-    }
-    const bool is_true = condition->getConstArray()[0].getBConst();
-    if (TIntermNode *block = is_true ? selection->getTrueBlock() : selection->getFalseBlock()) {
-      block->traverse(this);
-    }
-    return false;
   }
   void visitSymbol(glslang::TIntermSymbol *symbol) override
   {
