@@ -67,8 +67,8 @@ function(gnomon_compile_settings TARGET)
 endfunction()
 
 # gnomon_optimise_less(TARGET): for code that lists and prints, reads documents, makes devices and programs, decides what a frame does, and
-# calls other layers. Full optimisation takes a third of its compile time, and makes no frame measurably faster. GCC 13 and later refuse precompiled headers of -O3 for files
-# without the two other options, which -O1 does not set.
+# calls other layers. Full optimisation takes a third of its compile time, and makes no frame measurably faster. GCC 13 and later refuse
+# precompiled headers of -O3 for files without the two other options, which -O1 does not set.
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-munroll-only-small-loops GNOMON_HAS_SMALL_LOOPS)
 function(gnomon_optimise_less TARGET)

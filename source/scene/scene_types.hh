@@ -165,7 +165,7 @@ struct Mesh {
   enum class Aspect { Name, Shape, Layout, Material, Count };
 
   std::string name{};
-  /** All values of vertices are finite. */
+  /** The values of this vector and of the others of vertices must be finite. */
   std::vector<glm::vec3> positions{};
   /** Unit vectors, one for each position. */
   std::vector<glm::vec3> normals{};
