@@ -16,6 +16,8 @@ struct InvalidEdit : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+struct PosedVertices;
+
 /** A mesh at a node, as engines draw it. */
 struct Object {
   Handle<Node> node{};
@@ -356,8 +358,8 @@ class Scene {
   void replace_value(Handle<T> handle, T value);
   template <typename T>
   void restore_value(Handle<T> handle, T value);
-  /** Replaces a mesh in deformed_meshes, whose rest shape does not change. */
-  void replace_deformed(Handle<Mesh> handle, Mesh mesh);
+  /** Sets what a pose changes of a mesh in deformed_meshes, whose rest shape does not change. \throws InvalidEdit */
+  void set_posed(Handle<Mesh> handle, PosedVertices posed);
   void remove_subtree(Handle<Node> node);
   /** \a next: the child of \a parent that follows; an invalid handle: none. */
   void link(Handle<Node> node, Handle<Node> parent, Handle<Node> next = {});

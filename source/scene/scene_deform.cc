@@ -199,7 +199,7 @@ void make_flat_normals(Shape &shape, const std::vector<std::uint32_t> &indices)
 /** The outcome of one deformation. */
 struct Deformed {
   /** Empty: the mesh does not change. */
-  std::optional<Mesh> mesh;
+  std::optional<PosedVertices> vertices;
   /** \see DeformedMesh::reversed_triangles */
   std::vector<bool> reversed_triangles;
 };
@@ -214,38 +214,28 @@ Deformed deformed_mesh(const DeformedMesh &deformed, const std::vector<glm::dmat
   if (deformed.skin >= 0) {
     skin_vertices(deformed, joints, current, shape);
   }
-  Deformed result{.mesh = {}, .reversed_triangles = mirrored_triangles(shape, current)};
-  const bool is_reordered = result.reversed_triangles != deformed.reversed_triangles;
-  std::vector<std::uint32_t> reordered;
-  if (is_reordered) {
-    reordered = rest_indices(current, deformed);
-    reverse(result.reversed_triangles, reordered);
+  Deformed result{.vertices = {}, .reversed_triangles = mirrored_triangles(shape, current)};
+  PosedVertices posed;
+  if (result.reversed_triangles != deformed.reversed_triangles) {
+    posed.indices = rest_indices(current, deformed);
+    reverse(result.reversed_triangles, *posed.indices);
   }
   if (deformed.has_flat_normals) {
-    make_flat_normals(shape, is_reordered ? reordered : current.indices);
+    make_flat_normals(shape, posed.indices ? *posed.indices : current.indices);
   }
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;
-  std::vector<glm::vec4> tangents;
   for (std::size_t i = 0; i < shape.positions.size(); i++) {
-    positions.emplace_back(shape.positions[i]);
-    normals.push_back(unit_or(shape.normals[i], deformed.normals[i]));
+    posed.positions.emplace_back(shape.positions[i]);
+    posed.normals.push_back(unit_or(shape.normals[i], deformed.normals[i]));
     if (!shape.tangents.empty()) {
       const bool is_mirrored = !shape.is_mirrored.empty() && shape.is_mirrored[i];
-      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])),
-                            (is_mirrored ? -1.0F : 1.0F) * deformed.tangents[i].w);
+      posed.tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])),
+                                  (is_mirrored ? -1.0F : 1.0F) * deformed.tangents[i].w);
     }
   }
   // Do not edit the mesh if it does not change, so that it is not uploaded and shadows are not drawn again.
-  if (positions == current.positions && normals == current.normals && tangents == current.tangents && !is_reordered) {
-    return result;
-  }
-  result.mesh = current;
-  result.mesh->positions = std::move(positions);
-  result.mesh->normals = std::move(normals);
-  result.mesh->tangents = std::move(tangents);
-  if (is_reordered) {
-    result.mesh->indices = std::move(reordered);
+  if (posed.indices || posed.positions != current.positions || posed.normals != current.normals ||
+      posed.tangents != current.tangents) {
+    result.vertices = std::move(posed);
   }
   return result;
 }
@@ -376,8 +366,8 @@ void deform_meshes(Scene &scene)
       continue;
     }
     Deformed changed = deformed_mesh(deformed, joints, *mesh);
-    if (changed.mesh) {
-      scene.replace_deformed(deformed.mesh, std::move(*changed.mesh));
+    if (changed.vertices) {
+      scene.set_posed(deformed.mesh, std::move(*changed.vertices));
     }
     deformed.reversed_triangles = std::move(changed.reversed_triangles);
     deformed.deformed_by_joints = std::move(joints);

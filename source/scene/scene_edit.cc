@@ -26,6 +26,14 @@ template <typename... Args>
   throw InvalidEdit(fmt::format("{} '{}': {}", kind, name, fmt::format(reason, std::forward<Args>(args)...)));
 }
 
+/** \throws InvalidEdit that names a vector of vertices with a value that is not finite */
+void check_finite(const Mesh &mesh, std::string_view name, const auto &stream)
+{
+  if (const auto index = first_infinite(stream)) {
+    refuse("mesh", mesh.name, "{} {} is not finite", name, *index);
+  }
+}
+
 void check(const Mesh &mesh)
 {
   if (mesh.host_shape) {
@@ -42,20 +50,12 @@ void check(const Mesh &mesh)
   if (mesh.normals.size() != count) {
     refuse("mesh", mesh.name, "{} normals for {} positions", mesh.normals.size(), count);
   }
-  const auto check_stream = [&](std::string_view what, const auto &stream) {
-    if (!stream.empty() && stream.size() != count) {
-      refuse("mesh", mesh.name, "{} {}s for {} positions", stream.size(), what, count);
+  for_each_stream_member([&](auto stream, auto /*values*/, std::string_view name) {
+    if (!(mesh.*stream).empty() && (mesh.*stream).size() != count) {
+      refuse("mesh", mesh.name, "{} {}s for {} positions", (mesh.*stream).size(), name, count);
     }
-    if (const auto index = first_infinite(stream)) {
-      refuse("mesh", mesh.name, "{} {} is not finite", what, *index);
-    }
-  };
-  check_stream("position", mesh.positions);
-  check_stream("normal", mesh.normals);
-  check_stream("uv", mesh.uvs);
-  check_stream("second uv", mesh.second_uvs);
-  check_stream("tangent", mesh.tangents);
-  check_stream("colour", mesh.colors);
+    check_finite(mesh, name, mesh.*stream);
+  });
   if (const auto index = first_beyond_one(mesh.colors)) {
     refuse("mesh", mesh.name, "colour {} is not from 0 to 1", *index);
   }
@@ -343,9 +343,26 @@ void Scene::replace(Handle<Mesh> handle, Mesh mesh)
   }
 }
 
-void Scene::replace_deformed(Handle<Mesh> handle, Mesh mesh)
+void Scene::set_posed(Handle<Mesh> handle, PosedVertices posed)
 {
-  replace_value(handle, std::move(mesh));
+  Mesh &mesh = meshes_.writable(handle);
+  const VertexValues values{.positions = posed.positions, .normals = posed.normals, .tangents = posed.tangents};
+  for_each_stream_member(
+      [&](auto /*stream*/, auto new_values, std::string_view name) { check_finite(mesh, name, values.*new_values); });
+  const bool is_new_layout = posed.indices || posed.tangents.size() != mesh.tangents.size();
+  mesh.positions = std::move(posed.positions);
+  mesh.normals = std::move(posed.normals);
+  mesh.tangents = std::move(posed.tangents);
+  if (posed.indices) {
+    mesh.indices = std::move(*posed.indices);
+  }
+  mesh.bounds = bounds_of(mesh);
+  vertex_blocks_.erase(handle);
+  const Revision revision = edited();
+  meshes_.touch(handle, Mesh::Aspect::Shape, revision);
+  if (is_new_layout) {
+    meshes_.touch(handle, Mesh::Aspect::Layout, revision);
+  }
 }
 
 void Scene::replace(Handle<Image> handle, Image image)

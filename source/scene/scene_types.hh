@@ -233,21 +233,31 @@ struct VertexRange {
   bool operator==(const VertexRange &) const = default;
 };
 
+/**
+ * Calls \a visit for each vector of Mesh that has a value for each position, with three arguments: the member of Mesh,
+ * the member of VertexValues and the name of one value. The plural of each name has an s.
+ */
+template <typename Visit>
+constexpr void for_each_stream_member(Visit &&visit)
+{
+  using namespace std::string_view_literals;
+  visit(&Mesh::positions, &VertexValues::positions, "position"sv);
+  visit(&Mesh::normals, &VertexValues::normals, "normal"sv);
+  visit(&Mesh::uvs, &VertexValues::uvs, "uv"sv);
+  visit(&Mesh::second_uvs, &VertexValues::second_uvs, "second uv"sv);
+  visit(&Mesh::tangents, &VertexValues::tangents, "tangent"sv);
+  visit(&Mesh::colors, &VertexValues::colors, "colour"sv);
+}
+
 /** Calls \a function with each vector of \a mesh that has a value for each position. Empty vectors are skipped. */
 template <typename AnyMesh, typename Function>
 void for_each_stream(AnyMesh &mesh, Function &&function)
 {
-  const auto visit = [&](auto &stream) {
-    if (!stream.empty()) {
-      function(stream);
+  for_each_stream_member([&](auto stream, auto /*values*/, std::string_view /*name*/) {
+    if (!(mesh.*stream).empty()) {
+      function(mesh.*stream);
     }
-  };
-  visit(mesh.positions);
-  visit(mesh.normals);
-  visit(mesh.uvs);
-  visit(mesh.second_uvs);
-  visit(mesh.tangents);
-  visit(mesh.colors);
+  });
 }
 
 }  // namespace gnomon::scene

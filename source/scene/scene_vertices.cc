@@ -14,18 +14,6 @@ namespace gnomon::scene {
 
 namespace {
 
-/** Calls \a visit with each vector of a mesh, its new values and their name. */
-template <typename Visit>
-void for_each_values(const VertexValues &values, auto &mesh, Visit &&visit)
-{
-  visit(mesh.positions, values.positions, "positions");
-  visit(mesh.normals, values.normals, "normals");
-  visit(mesh.uvs, values.uvs, "uvs");
-  visit(mesh.second_uvs, values.second_uvs, "second uvs");
-  visit(mesh.tangents, values.tangents, "tangents");
-  visit(mesh.colors, values.colors, "colours");
-}
-
 void check(const Mesh &mesh, const VertexValues &values)
 {
   const auto refuse = [&](const std::string &reason) {
@@ -36,15 +24,16 @@ void check(const Mesh &mesh, const VertexValues &values)
   if (beyond != values.vertices.end()) {
     refuse(fmt::format("vertex {} is beyond its {} positions", *beyond, count));
   }
-  for_each_values(values, mesh, [&](const auto &stream, const auto &set, std::string_view what) {
+  for_each_stream_member([&](auto stream, auto new_values, std::string_view name) {
+    const auto &set = values.*new_values;
     if (!set.empty() && set.size() != values.vertices.size()) {
-      refuse(fmt::format("{} {} for {} vertices", set.size(), what, values.vertices.size()));
+      refuse(fmt::format("{} {}s for {} vertices", set.size(), name, values.vertices.size()));
     }
-    if (!set.empty() && stream.empty()) {
-      refuse(fmt::format("it has no {}", what));
+    if (!set.empty() && (mesh.*stream).empty()) {
+      refuse(fmt::format("it has no {}s", name));
     }
     if (const auto index = first_infinite(set)) {
-      refuse(fmt::format("{} {} is not finite", what.substr(0, what.size() - 1), values.vertices[*index]));
+      refuse(fmt::format("{} {} is not finite", name, values.vertices[*index]));
     }
   });
   if (const auto index = first_beyond_one(values.colors)) {
@@ -56,9 +45,10 @@ void check(const Mesh &mesh, const VertexValues &values)
 bool set_vertex(Mesh &mesh, const VertexValues &values, std::size_t i)
 {
   bool is_changed = false;
-  for_each_values(values, mesh, [&](auto &stream, const auto &set, std::string_view /*what*/) {
-    if (!set.empty() && !same_bytes(stream[values.vertices[i]], set[i])) {
-      stream[values.vertices[i]] = set[i];
+  for_each_stream_member([&](auto stream, auto new_values, std::string_view /*name*/) {
+    const auto &set = values.*new_values;
+    if (!set.empty() && !same_bytes((mesh.*stream)[values.vertices[i]], set[i])) {
+      (mesh.*stream)[values.vertices[i]] = set[i];
       is_changed = true;
     }
   });

@@ -158,6 +158,48 @@ TEST_F(SceneDeformTest, AnEditOfSomeVerticesIsOneOfTheWholeMesh)
   EXPECT_EQ(scene.meshes()[mesh].positions, other.meshes()[mesh].positions);
 }
 
+TEST_F(SceneDeformTest, APoseWritesOnlyWhatItChanges)
+{
+  scene.edit(mesh, [](Mesh &edited) {
+    edited.uvs.assign(8, {0.25F, 0.75F});
+    edited.colors.assign(8, glm::vec4(0.5F));
+  });
+  const Mesh before = shown();
+  const void *uvs = shown().uvs.data();
+  const void *colors = shown().colors.data();
+  const auto revision_of = [&](Mesh::Aspect aspect) { return scene.meshes().revision(mesh, aspect); };
+  const Revision seen = scene.revision();
+  pose_at(0.5);
+  EXPECT_GT(distance(shown().positions, before.positions), 0.1);
+  EXPECT_EQ(shown().uvs.data(), uvs);
+  EXPECT_EQ(shown().colors.data(), colors);
+  EXPECT_EQ(shown().uvs, before.uvs);
+  EXPECT_EQ(shown().colors, before.colors);
+  EXPECT_EQ(shown().indices, before.indices);
+  Bounds bounds;
+  for (const glm::vec3 &position : shown().positions) {
+    bounds.extend(position);
+  }
+  EXPECT_EQ(shown().bounds, bounds);
+  EXPECT_GT(revision_of(Mesh::Aspect::Shape), seen);
+  for (const Mesh::Aspect aspect : {Mesh::Aspect::Name, Mesh::Aspect::Layout, Mesh::Aspect::Material}) {
+    EXPECT_LE(revision_of(aspect), seen) << int(aspect);
+  }
+}
+
+TEST_F(SceneDeformTest, APoseThatIsNotFiniteIsAnErrorThatNamesTheStream)
+{
+  pose_at(0.5);
+  const Mesh before = shown();
+  const Revision seen = scene.revision();
+  scene.deformed_meshes[0].positions[5].y = INFINITY;
+  EXPECT_EQ(fault_at(1.0), "mesh 'body': position 5 is not finite");
+  EXPECT_EQ(shown().positions, before.positions);
+  EXPECT_EQ(shown().normals, before.normals);
+  EXPECT_EQ(shown().bounds, before.bounds);
+  EXPECT_LE(scene.meshes().revision(mesh, Mesh::Aspect::Shape), seen);
+}
+
 TEST_F(SceneDeformTest, AnEditBeforeTheFirstPoseIsOneOfTheRestShape)
 {
   scene.edit(mesh, [](Mesh &edited) { edited.positions[6] = {9, 9, 9}; });

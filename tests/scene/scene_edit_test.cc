@@ -811,6 +811,38 @@ TEST_F(SceneVertices, ThatDoNotFitAreRefused)
   EXPECT_THROW(scene.set_vertices(mesh, {}), StaleHandle);
 }
 
+TEST(SceneEdit, EachStreamOfVerticesIsNamedByItsErrors)
+{
+  std::size_t count = 0;
+  for_each_stream_member([&](auto stream, auto new_values, std::string_view name) {
+    count++;
+    Scene scene;
+    Mesh mesh = triangle();
+    (mesh.*stream).resize(4);
+    // More positions are too many for the first of the others.
+    const std::string counts =
+        name == "position" ? "3 normals for 4 positions" : fmt::format("4 {}s for 3 positions", name);
+    EXPECT_EQ(message_of<InvalidEdit>([&] { scene.add(mesh); }), fmt::format("mesh '{}': {}", mesh.name, counts));
+    mesh = triangle();
+    (mesh.*stream).resize(3);
+    const Handle<Mesh> handle = scene.add(mesh);
+    auto values = mesh.*stream;
+    values[1].y = float(nan);
+    mesh.*stream = values;
+    EXPECT_EQ(message_of<InvalidEdit>([&] { scene.replace(handle, mesh); }),
+              fmt::format("mesh '{}': {} 1 is not finite", mesh.name, name));
+    const std::vector<std::uint32_t> vertices = {0, 2, 1};
+    VertexValues set{.vertices = vertices};
+    set.*new_values = values;
+    EXPECT_EQ(message_of<InvalidEdit>([&] { scene.set_vertices(handle, set); }),
+              fmt::format("mesh '{}': {} 2 is not finite", mesh.name, name));
+    set.*new_values = std::span(values).first(1);
+    EXPECT_EQ(message_of<InvalidEdit>([&] { scene.set_vertices(handle, set); }),
+              fmt::format("mesh '{}': 1 {}s for 3 vertices", mesh.name, name));
+  });
+  EXPECT_EQ(sizeof(VertexValues), (count + 1) * sizeof(VertexValues::vertices)) << "a stream is not in the list";
+}
+
 TEST(SceneRevision, MovingAParentChangesTheTransformsBelowAlone)
 {
   Scene scene;

@@ -86,7 +86,7 @@ def check(program, random, of):
                                 extensions={"KHR_materials_unlit": {}})
     if of["mode"] == "MASK":
         json["materials"][0]["alphaCutoff"] = of["cutoff"]
-    if vertex_alpha != 1 or of["vertex alpha"] is not None:
+    if of["vertex alpha"] is not None:
         number, code, component = (255, "B", 5121) if isinstance(of["vertex alpha"], int) else (1.0, "f", 5126)
         accessor = gltf.accessor([[number, number, number, of["vertex alpha"]]] * 4, "VEC4", code, component)
         json["accessors"][accessor]["normalized"] = component == 5121

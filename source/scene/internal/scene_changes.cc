@@ -54,16 +54,13 @@ bool same_slot(const TextureSlot &a, const TextureSlot &b)
 Changes changes(const Mesh &a, const Mesh &b)
 {
   using enum Mesh::Aspect;
-  const bool same_layout = a.positions.size() == b.positions.size() && a.normals.size() == b.normals.size() &&
-                           a.uvs.size() == b.uvs.size() && a.second_uvs.size() == b.second_uvs.size() &&
-                           a.tangents.size() == b.tangents.size() && a.colors.size() == b.colors.size() &&
-                           same_elements(a.indices, b.indices) && a.topology == b.topology &&
-                           a.host_shape == b.host_shape;
-  const bool same_shape = same_layout && same_elements(a.positions, b.positions) &&
-                          same_elements(a.normals, b.normals) && same_elements(a.uvs, b.uvs) &&
-                          same_elements(a.second_uvs, b.second_uvs) && same_elements(a.tangents, b.tangents) &&
-                          same_elements(a.colors, b.colors);
-  return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(!same_layout, Layout) |
+  bool same_layout = same_elements(a.indices, b.indices) && a.topology == b.topology && a.host_shape == b.host_shape;
+  bool same_values = true;
+  for_each_stream_member([&](auto stream, auto /*values*/, std::string_view /*name*/) {
+    same_layout = same_layout && (a.*stream).size() == (b.*stream).size();
+    same_values = same_values && same_elements(a.*stream, b.*stream);
+  });
+  return bit_if(a.name != b.name, Name) | bit_if(!same_layout || !same_values, Shape) | bit_if(!same_layout, Layout) |
          bit_if(a.material != b.material, Material);
 }
 

@@ -17,6 +17,16 @@ struct RestShape {
   bool has_flat_normals = false;
 };
 
+/** What a pose changes of a mesh: as many values as the mesh has positions. */
+struct PosedVertices {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  /** Empty: the mesh gets none. */
+  std::vector<glm::vec4> tangents;
+  /** The indices of the mesh with other triangles reversed. Empty: the mesh keeps its own. */
+  std::optional<std::vector<std::uint32_t>> indices;
+};
+
 /**
  * The rest shape that the last deformation of \a deformed would deform to \a after. \a before: the mesh of the scene.
  * Vertices that are the same in both keep their rest shape. Empty if \a after does not fit the rest shape, or is a
