@@ -307,6 +307,63 @@ TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheMaskLeaves)
   EXPECT_EQ(traced(occlusion).probe_count.x, 0.0F);
 }
 
+TEST_F(WorldOcclusionTest, BelowAMaskIsWhatTheAlphaOfVerticesLeaves)
+{
+  const auto texture = test::add_texture(scene, 2, {255, 255, 255, 255, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0, 0});
+  const auto material = test::add_material(scene, glm::vec3(1.0F));
+  scene.edit(material, [&](scene::Material &value) {
+    value.base_color_texture.texture = texture;
+    value.alpha_mode = scene::AlphaMode::Mask;
+    value.alpha_cutoff = 0.3F;
+  });
+  const auto square = test::add_square_mesh(scene, material);
+  test::add_object(scene, square, glm::scale(glm::dmat4(1.0), glm::dvec3(50.0)));
+  const auto set_alphas = [&](float left, float right) {
+    scene.edit(square, [&](scene::Mesh &mesh) {
+      mesh.colors.clear();
+      for (const glm::vec3 &position : mesh.positions) {
+        mesh.colors.emplace_back(1.0F, 1.0F, 1.0F, position.x < 0.0F ? left : right);
+      }
+    });
+  };
+  WorldOcclusion occlusion;
+  const auto mean_below = [&](float x_min, float x_max) {
+    double sum = 0.0;
+    int count = 0;
+    for_each_probe(traced(occlusion), [&](const glm::vec3 &p, const glm::vec3 &positive, const glm::vec3 &) {
+      if (p.x > x_min && p.x < x_max && std::abs(p.y) < 30.0F && p.z < 0.0F) {
+        sum += double(positive.z);
+        count++;
+      }
+    });
+    EXPECT_GT(count, 0);
+    return sum / count;
+  };
+  // Half of the texels, a quarter and none are covered. Bounds as above.
+  set_alphas(1.0F, 1.0F);
+  EXPECT_NEAR(mean_below(-30, 30), 0.5, 0.025);
+  set_alphas(0.6F, 0.6F);
+  EXPECT_NEAR(mean_below(-30, 30), 0.75, 0.025);
+  set_alphas(0.2F, 0.2F);
+  EXPECT_EQ(mean_below(-30, 30), 1.0);
+  // From 0.2 to 1 along x: no texel, a quarter from 0.3 on, at x = -37.5, and half from 0.765 on, at 20.6.
+  set_alphas(0.2F, 1.0F);
+  EXPECT_NEAR(mean_below(-30, 0), 0.75, 0.025);
+  EXPECT_NEAR(mean_below(20, 30), 0.5, 0.025);
+  // Without a texture, the right half is covered. Probes are 4.7 m below: one that is 10 m from the edge between the
+  // halves sees (1 - 10 / √(10² + 4.7²)) / 2 of the other, which is 0.047.
+  scene.edit(material, [](scene::Material &value) {
+    value.base_color_texture = {};
+    value.alpha_cutoff = 0.5F;
+  });
+  set_alphas(0.0F, 1.0F);
+  EXPECT_GT(mean_below(-40, -10), 0.95);
+  EXPECT_LT(mean_below(10, 40), 0.05);
+  set_alphas(1.0F, 0.0F);
+  EXPECT_LT(mean_below(-40, -10), 0.05);
+  EXPECT_GT(mean_below(10, 40), 0.95);
+}
+
 TEST_F(WorldOcclusionTest, NeedsCasters)
 {
   const auto node = add_box({-1, -1, -1}, {1, 1, 1});

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -127,6 +128,8 @@ struct CasterTree::MeshTree {
     std::array<glm::vec3, 2> edges;
   };
   std::vector<Triangle> triangles;
+  /** Alphas of the corners of each triangle. Empty: all are 1. */
+  std::vector<glm::vec3> alphas;
   BoxTree tree;
 
   explicit MeshTree(const scene::Mesh &mesh)
@@ -140,39 +143,81 @@ struct CasterTree::MeshTree {
       boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
     }
     tree = BoxTree(boxes);
+    if (std::ranges::any_of(mesh.colors, [](const glm::vec4 &color) { return color.a < 1.0F; })) {
+      for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+        alphas.emplace_back(mesh.colors[mesh.indices[i]].a, mesh.colors[mesh.indices[i + 1]].a,
+                            mesh.colors[mesh.indices[i + 2]].a);
+      }
+    }
   }
 };
 
-double CasterTree::cover_of(const scene::Scene &scene, const scene::Mesh &mesh, const Covers &last)
+CasterTree::Texels::Texels(const scene::Image &image)
+{
+  std::array<std::size_t, 256> counts{};
+  for (std::size_t i = 3; i < image.texels.size(); i += 4) {
+    counts[image.texels[i]]++;
+  }
+  std::size_t count = 0;
+  for (std::size_t byte = counts.size(); byte-- > 0;) {
+    count += counts[byte];
+    shares[byte] = float(double(count) / double(image.texels.size() / 4));
+  }
+  fingerprint = fingerprint_of(std::as_bytes(std::span(shares)));
+}
+
+CasterTree::Mask CasterTree::mask_of(const scene::Scene &scene, const scene::Mesh &mesh, Images &last)
 {
   const scene::Material &material = scene.material_of(mesh);
   const scene::TextureSlot &slot = material.base_color_texture;
-  if (!render_scene::is_masked(scene, mesh) || render_scene::has_surface_function(scene, material) ||
-      !render_scene::is_drawable(scene, mesh, slot)) {
-    return 1.0;
+  if (!render_scene::is_masked(scene, mesh) || render_scene::has_surface_function(scene, material)) {
+    return {};
+  }
+  Mask mask{.cutoff = material.alpha_cutoff / material.alpha};
+  if (!render_scene::is_drawable(scene, mesh, slot)) {
+    return mask;
   }
   const scene::Handle<scene::Image> handle = scene.textures()[slot.texture].image;
-  const CoverKey key{handle.key(), scene.images().revision(handle, scene::Image::Aspect::Content),
-                     material.alpha_cutoff / material.alpha};
-  const auto [cover, is_new] = covers_.try_emplace(key, 1.0);
-  if (const auto found = last.find(key); is_new && found != last.end()) {
-    cover->second = found->second;
+  const ImageKey key{handle.key(), scene.images().revision(handle, scene::Image::Aspect::Content)};
+  // The node of a map keeps its address.
+  images_.insert(last.extract(key));
+  const auto [image, is_new] = images_.try_emplace(key);
+  if (is_new) {
+    image->second = Texels(scene.images()[handle]);
   }
-  else if (const scene::Image &image = scene.images()[handle]; is_new && !image.texels.empty()) {
-    std::size_t count = 0;
-    for (std::size_t i = 3; i < image.texels.size(); i += 4) {
-      count += float(image.texels[i]) / 255.0F >= key.cutoff ? 1 : 0;
-    }
-    cover->second = double(count) / double(image.texels.size() / 4);
+  mask.texels = &image->second;
+  return mask;
+}
+
+float CasterTree::Mask::cover(float alpha) const
+{
+  if (!texels) {
+    return alpha >= cutoff ? 1.0F : 0.0F;
   }
-  return cover->second;
+  // The products as is_cut_out of the shaders compares them.
+  const auto bytes = std::views::iota(0U, 256U);
+  const auto least =
+      std::ranges::partition_point(bytes, [&](unsigned byte) { return alpha * (float(byte) / 255.0F) < cutoff; });
+  return least == bytes.end() ? 0.0F : texels->shares[*least];
+}
+
+bool CasterTree::is_covered(const Instance &instance, std::uint32_t triangle, float u, float v)
+{
+  if (instance.mask.cutoff <= 0.0F) {
+    return true;
+  }
+  const std::vector<glm::vec3> &alphas = instance.mesh->alphas;
+  const float alpha = alphas.empty() ? 1.0F : glm::dot(alphas[triangle], glm::vec3(1.0F - u - v, u, v));
+  // As good as random.
+  const double place = 1013.0 * double(u) + 757.0 * double(v);
+  return place - std::floor(place) < double(instance.mask.cover(alpha));
 }
 
 std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &scene)
 {
   const std::vector<Caster> casters = std::exchange(casters_, {});
   const auto meshes = std::exchange(meshes_, {});
-  const Covers covers = std::exchange(covers_, {});
+  Images images = std::exchange(images_, {});
   const scene::Scene &content = scene.scene();
   instances_.clear();
   std::vector<scene::Bounds> boxes;
@@ -193,29 +238,24 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
       const auto found = meshes.find(key);
       tree = found != meshes.end() ? found->second : std::make_shared<const MeshTree>(mesh);
     }
+    const Mask mask = mask_of(content, mesh, images);
     struct {
       MeshKey mesh;
-      double cover;
+      std::uint64_t texels;
       glm::mat4 world_from_object;
-      // The bytes of an integer without padding are hashed.
-      std::uint64_t is_double_sided;
-    } print{key, cover_of(content, mesh, covers), scene.objects().world_from_object(i),
-            std::uint64_t(content.material_of(mesh).is_double_sided)};
+      // The bytes of members without padding are hashed.
+      float cutoff;
+      std::uint32_t is_double_sided;
+    } print{key, mask.texels ? mask.texels->fingerprint : 0, scene.objects().world_from_object(i), mask.cutoff,
+            content.material_of(mesh).is_double_sided ? 1U : 0U};
     casters_.push_back({.bounds_ws = scene.object(i).bounds,
                         .object = i,
                         .fingerprint = fingerprint_of(std::as_bytes(std::span(&print, 1)))});
-    instances_.push_back({tree.get(), glm::inverse(print.world_from_object), print.cover, print.is_double_sided != 0});
+    instances_.push_back({tree.get(), glm::inverse(print.world_from_object), mask, print.is_double_sided != 0});
     boxes.push_back(scene.object(i).bounds);
   }
   tree_ = BoxTree(boxes);
   return changed_bounds(casters, casters_);
-}
-
-/** Whether a mask that covers the part \a cover of a triangle does so at barycentric coordinates: as good as random. */
-static bool is_covered(float u, float v, double cover)
-{
-  const double place = 1013.0 * double(u) + 757.0 * double(v);
-  return place - std::floor(place) < cover;
 }
 
 template <typename Accept>
@@ -241,7 +281,7 @@ void CasterTree::visit(const glm::vec3 &origin_ws, const glm::vec3 &direction_ws
       const float t = glm::dot(triangle.edges[1], q) * inverse;
       // The front is found in the space of the object, so that mirrored objects have theirs outside, too.
       if (determinant != 0.0F && u >= -margin && v >= -margin && u + v <= 1.0F + margin && t > 0.0F && t < t_max &&
-          is_covered(u, v, instance.cover) && accept(Meeting{i, k, t, determinant > 0.0F})) {
+          is_covered(instance, k, u, v) && accept(Meeting{i, k, t, determinant > 0.0F})) {
         t_max = t;
         is_over = !is_nearest;
       }

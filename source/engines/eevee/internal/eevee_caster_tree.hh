@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -67,8 +68,8 @@ struct SurfacePoint {
 
 /**
  * The triangles of a scene's casters. Those with an open shadow (render_scene::has_open_shadow) are left out, as are
- * those in buffers of a host, which the CPU does not have. The texture of a masked material blocks the part of the rays
- * that it covers, in no particular places.
+ * those in buffers of a host, which the CPU does not have. A mask blocks a ray as often as a texel covers it with the
+ * alpha of the vertices there: the texture has no particular places.
  */
 class CasterTree {
  public:
@@ -94,11 +95,29 @@ class CasterTree {
 
  private:
   struct MeshTree;
+  /** The alphas of an image. */
+  struct Texels {
+    /** For each byte, the part of the texels whose alpha is at least that. */
+    std::array<float, 256> shares{};
+    /** Of `shares`. */
+    std::uint64_t fingerprint = 0;
+
+    Texels() = default;
+    explicit Texels(const scene::Image &image);
+  };
+  struct Mask {
+    /** nullptr: without a texture. */
+    const Texels *texels = nullptr;
+    /** Least product of the alphas of texture and vertices that is drawn; 0 for a mesh without a mask. */
+    float cutoff = 0.0F;
+
+    /** The part of a surface that it covers. \a alpha: of the vertices there */
+    [[nodiscard]] float cover(float alpha) const;
+  };
   struct Instance {
     const MeshTree *mesh;
     glm::mat4 object_from_world;
-    /** Part of the rays that its triangles block. */
-    double cover;
+    Mask mask;
     bool is_double_sided;
   };
   /** A triangle, and where a ray meets it. */
@@ -114,18 +133,17 @@ class CasterTree {
 
     auto operator<=>(const MeshKey &) const = default;
   };
-  /** Key of a mask. */
-  struct CoverKey {
+  struct ImageKey {
     std::uint64_t image;
     scene::Revision content;
-    /** Least alpha that is drawn. */
-    float cutoff;
 
-    auto operator<=>(const CoverKey &) const = default;
+    auto operator<=>(const ImageKey &) const = default;
   };
-  using Covers = std::map<CoverKey, double>;
-  /** The part that the texture of a masked mesh covers; 1 for other meshes. \a last: before the update. */
-  double cover_of(const scene::Scene &scene, const scene::Mesh &mesh, const Covers &last);
+  using Images = std::map<ImageKey, Texels>;
+  /** \a last: before the update. Images that are used again move from there. */
+  Mask mask_of(const scene::Scene &scene, const scene::Mesh &mesh, Images &last);
+  /** Whether the mask covers a triangle at barycentric coordinates. */
+  [[nodiscard]] static bool is_covered(const Instance &instance, std::uint32_t triangle, float u, float v);
   /**
    * Call \a accept with each triangle that the ray meets before \a t_max; it returns whether the ray ends there. Unless
    * \a is_nearest, the first such triangle ends the search.
@@ -135,7 +153,7 @@ class CasterTree {
              Accept &&accept) const;
 
   std::map<MeshKey, std::shared_ptr<const MeshTree>> meshes_;
-  Covers covers_;
+  Images images_;
   std::vector<Caster> casters_;
   std::vector<Instance> instances_;
   BoxTree tree_;
