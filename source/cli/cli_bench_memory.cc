@@ -25,7 +25,7 @@ struct DeviceBytes {
 
 DeviceBytes device_bytes(gpu::Device &device, const scene::Scene &scene, const RenderOptions &options)
 {
-  eevee::SceneRenderer renderer(device, scene, options.size_px(), options.engine_settings());
+  eevee::SceneRenderer renderer(device, scene, options.size_px(device), options.engine_settings());
   renderer.sync();
   renderer.draw_sample(scene.placed_cameras().front());
   DeviceBytes bytes{.all = device.memory_bytes()};

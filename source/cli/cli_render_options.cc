@@ -4,6 +4,7 @@
 #include "cli.hh"
 #include "cli_aov.hh"
 #include "cli_device.hh"
+#include "gpu_device.hh"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -146,6 +147,16 @@ glm::ivec2 RenderOptions::size_px() const
     throw UsageError(fmt::format("--size '{}' is not WIDTHxHEIGHT in pixels", size));
   }
   return *pixels;
+}
+
+glm::ivec2 RenderOptions::size_px(const gpu::Device &device) const
+{
+  const glm::ivec2 pixels = size_px();
+  if (const int most = device.limits().texture_size_max; pixels.x > most || pixels.y > most) {
+    throw UsageError(fmt::format("--size '{}' is not from 1x1 to {}x{} pixels, the largest picture of the device", size,
+                                 most, most));
+  }
+  return pixels;
 }
 
 gpu::Rectangle RenderOptions::region() const

@@ -391,7 +391,7 @@ Status render_scene(RenderOptions options, gpu::Device &device, ImportedScene &i
                     const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
   scene::Scene &scene = imported.scene;
-  const glm::ivec2 size_px = options.size_px();
+  const glm::ivec2 size_px = options.size_px(device);
   FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   add_inputs(roles, scene, options.world);
@@ -465,7 +465,7 @@ MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device, o
   if (!device) {
     return measured;
   }
-  eevee::SceneRenderer renderer(*device, scene, options.size_px(), options.engine_settings());
+  eevee::SceneRenderer renderer(*device, scene, options.size_px(*device), options.engine_settings());
   const auto draw_while = [&](const std::function<bool(int drawn)> &condition) {
     renderer.sync();
     const int count = renderer.draw(find_camera(scene, options), {.progress = condition});

@@ -107,6 +107,20 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
   }
 }
 
+TEST_F(CliTest, APictureBeyondTheLimitOfTheDeviceIsWrongUsage)
+{
+  const std::string scene = example("plaza") + " --backend null --size ";
+  for (const std::string command : {"render --samples 1 -o x.exr ", "bench memory "}) {
+    for (const std::string size : {"16385x1", "1x16385", "2147483647x2147483647"}) {
+      const Finished finished = run(command + scene + size);
+      EXPECT_EQ(finished.status, 2) << command << size;
+      EXPECT_EQ(finished.err, "gnomon: --size '" + size +
+                                  "' is not from 1x1 to 16384x16384 pixels, the largest picture of the device\n");
+    }
+    EXPECT_EQ(run(command + scene + "16384x1").status, 0);
+  }
+}
+
 TEST_F(CliTest, AnUnknownCommandIsNamed)
 {
   for (const auto &[arguments, name] : {std::pair("rend x.glb", "rend"), {"bench lunch", "lunch"}}) {
