@@ -914,7 +914,27 @@ TEST(CheckProgram, IncludesAreThoseOfTheCompiler)
 TEST(CheckProgram, AnIncludeWithoutAnEndIsAMessage)
 {
   Texts texts{{"x.frag", including("#include \"a.glsl\"\n", "1.0")}, {"a.glsl", "#include \"a.glsl\"\n"}};
-  EXPECT_NE(messages_of(check_texts(texts)).find("[include]"), std::string::npos) << messages_of(check_texts(texts));
+  EXPECT_EQ(messages_of(check_texts(texts)),
+            "a.glsl:1: error: 'a.glsl' includes itself, at a depth of more than 200 [include]\n");
+  texts["a.glsl"] = "\n#include \"b.glsl\"\n";
+  texts["b.glsl"] = "#include \"c.glsl\"\n";
+  texts["c.glsl"] = "#include \"a.glsl\"\n";
+  EXPECT_EQ(messages_of(check_texts(texts)),
+            "b.glsl:1: error: 'b.glsl' includes itself by way of 'c.glsl', 'a.glsl', at a depth of more than 200 "
+            "[include]\n");
+  texts["c.glsl"] = "#include \"x.frag\"\n";
+  EXPECT_EQ(messages_of(check_texts(texts)),
+            "c.glsl:1: error: 'x.frag' includes itself by way of 'a.glsl', 'b.glsl', 'c.glsl', which a file with "
+            "#version cannot do [include]\n");
+  texts["x.frag"] = including("#include \"x.frag\"\n", "1.0");
+  EXPECT_EQ(messages_of(check_texts(texts)),
+            "x.frag:3: error: 'x.frag' includes itself, which a file with #version cannot do [include]\n");
+  texts["x.frag"] = including("#include \"0.glsl\"\n", "1.0");
+  for (int i = 0; i < 201; i++) {
+    texts[fmt::format("{}.glsl", i)] = fmt::format("#include \"{}.glsl\"\n", i + 1);
+  }
+  EXPECT_EQ(messages_of(check_texts(texts)),
+            "199.glsl:1: error: '200.glsl' is included at a depth of more than 200 [include]\n");
   texts["a.glsl"] = "#ifndef A\n#define A\n#include \"a.glsl\"\nfloat a = 1.0;\n#endif\n";
   texts["x.frag"] = including("#include \"a.glsl\"\n#include \"a.glsl\"\n", "a");
   EXPECT_EQ(messages_of(check_texts(texts)), "") << "a guard ends it";

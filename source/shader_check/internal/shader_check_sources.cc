@@ -7,6 +7,7 @@
 #include <charconv>
 #include <filesystem>
 #include <limits>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -214,8 +215,12 @@ class StageSource::Includer : public glslang::TShader::Includer {
   /** \a beside: is tried before the folders. */
   IncludeResult *find(const std::string &named, std::size_t depth, const fs::path *beside)
   {
+    open_files_.resize(depth, 0);
     if (depth > include_depth_max) {
-      return failed(fmt::format("'{}' is included at a depth of more than {}", named, include_depth_max));
+      const std::string circle = circle_text(open_files_.back(), std::span(open_files_).first(depth - 1));
+      return failed(fmt::format("{} at a depth of more than {}",
+                                circle.empty() ? fmt::format("'{}' is included", named) : circle + ",",
+                                include_depth_max));
     }
     if (beside != nullptr) {
       if (IncludeResult *result = open(*beside)) {
@@ -250,6 +255,11 @@ class StageSource::Includer : public glslang::TShader::Includer {
     }
     const std::size_t file = source_.file_of(found->path);
     const std::string_view text = source_.unmarked(file, found->text);
+    if (const std::string circle = circle_text(file, open_files_); !circle.empty() && version_in(text)) {
+      // glslang would say of the second #version that it is not first.
+      return failed(circle + ", which a file with #version cannot do");
+    }
+    open_files_.push_back(file);
     count(file, text);
     if (bytes_ + source_.text_.size() > stage_bytes_max) {
       return failed(too_long_text());
@@ -259,6 +269,20 @@ class StageSource::Includer : public glslang::TShader::Includer {
     }
     reason_.clear();
     return new IncludeResult(name_of(file), text.data(), text.size(), nullptr);
+  }
+
+  /** How \a file includes itself; empty: it is not one of \a open, the including files from the stage's on. */
+  [[nodiscard]] std::string circle_text(std::size_t file, std::span<const std::size_t> open) const
+  {
+    const auto last = std::ranges::find(std::views::reverse(open), file).base();
+    if (last == open.begin()) {
+      return {};
+    }
+    std::string text = fmt::format("'{}' includes itself", source_.files_[file]);
+    for (auto between = last; between != open.end(); between++) {
+      text += fmt::format("{}'{}'", between == last ? " by way of " : ", ", source_.files_[*between]);
+    }
+    return text;
   }
 
   /** Counts the bytes of an include. Bytes that a guard skips are counted apart: glslang only looks for its end. */
@@ -308,6 +332,8 @@ class StageSource::Includer : public glslang::TShader::Includer {
   const gpu::ShaderFiles &files_;
   std::span<const std::string> folders_;
   std::string reason_;
+  /** The file of the stage and the open includes within each other, by their indices in files(). */
+  std::vector<std::size_t> open_files_;
   /** Include guards by the indices of files; empty for files without one. */
   std::unordered_map<std::size_t, std::string_view> guards_;
   /** Macros that a text undefines: such a guard may skip nothing. */
