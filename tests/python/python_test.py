@@ -5,6 +5,7 @@ import ast
 import copy
 import ctypes
 import gc
+import importlib.util
 import inspect
 import json
 import math
@@ -15,6 +16,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -842,6 +844,30 @@ class Pictures(unittest.TestCase):
             gnomon.image_error(picture, exact[:, 1:])
         with self.assertRaisesRegex(ValueError, "sample_count 3"):
             gnomon.trace(scene, (32, 18), sample_count=3)
+
+
+class Mirrors(unittest.TestCase):
+    """The part of the add-on for Blender that needs no Blender."""
+
+    def test_properties_that_a_host_leaves_out_have_their_defaults(self):
+        spec = importlib.util.spec_from_file_location(
+            "mirror", Path(os.environ["GNOMON_SOURCE"], "integrations/blender/render_gnomon/mirror.py"))
+        module = sys.modules["mirror"] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        mirror = module.Mirror(gnomon)
+        image = numpy.zeros((2, 2, 4), numpy.uint8)
+        glass = {"name": "m", "metallic": 0.0, "transmission": 1.0, "ior": 1.3, "alpha_mode": "MASK", "base_color_texture": "image"}
+        sun = {"name": "l", "kind": "SUN", "angle": 0.1, "intensity": 3.0}
+        spot = {"name": "l", "kind": "SPOT", "spot_blend": 0.5, "intensity": 2.0, "shadow_kind": "NONE"}
+        for materials, lamps in (({"m": glass}, {"l": sun}), ({"m": {"name": "m"}}, {"l": spot}), ({"m": glass}, {"l": sun})):
+            mirror.show(module.Content({"image": image}, materials, {}, lamps))
+            new = module.Mirror(gnomon)
+            new.show(module.Content({"image": image}, materials, {}, lamps))
+            for thing, expected in ((mirror.materials["m"], new.materials["m"]), (mirror.lamps["l"], new.lamps["l"])):
+                for name in (name for name in dir(thing) if isinstance(getattr(type(thing), name), property)):
+                    if not name.endswith("_texture"):
+                        self.assertEqual(getattr(thing, name), getattr(expected, name), name)
+            self.assertEqual(mirror.materials["m"].base_color_texture is None, "base_color_texture" not in materials["m"])
 
 
 class HostContext:

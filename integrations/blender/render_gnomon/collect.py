@@ -14,11 +14,8 @@ WITHOUT_SURFACE = {'EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'}
 WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
 # Reflectance of a dielectric at normal incidence, of which Gnomon's specular colour is a factor.
 DIELECTRIC_F0 = 0.04
-MATERIAL = {'base_color': (1.0, 1.0, 1.0), 'base_color_texture': None, 'metallic': 0.0, 'roughness': 0.5, 'metallic_roughness_texture': None,
-            'normal_texture': None, 'normal_scale': 1.0, 'specular': 1.0, 'specular_color': (1.0, 1.0, 1.0), 'coat': 0.0, 'coat_roughness': 0.0,
-            'emissive': (0.0, 0.0, 0.0), 'emissive_texture': None, 'transmission': 0.0, 'ior': 1.5, 'thickness': 0.0, 'attenuation_color': (1.0, 1.0, 1.0),
-            'attenuation_distance': 0.0, 'alpha': 1.0, 'alpha_mode': 'OPAQUE',
-            'alpha_cutoff': 0.5}
+# Of a material without nodes that say otherwise. Gnomon's defaults are those of glTF, a rough metal.
+MATERIAL = {'metallic': 0.0, 'roughness': 0.5}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -270,14 +267,14 @@ class Collector:
             for remark in materials.remarks_of(material):
                 self.remark(f"material '{name}': {remark}")
             values = self.properties_of(material, content)
-            if values['transmission'] > 0 and (absorption := materials.absorption(material)) is not None:
+            if values.get('transmission', 0) > 0 and (absorption := materials.absorption(material)) is not None:
                 values['attenuation_color'], values['attenuation_distance'] = absorption
             self.materials[name] = values
             if 'gnomon_thickness' in material:
                 self.thicknesses[name] = max(float(material['gnomon_thickness']), 0.0)
             self.placings[name] = self.common_placing(material)
             self.color_names[name] = materials.base_color_name(material)
-        return name, self.materials[name]['transmission'] > 0, self.placings[name], self.color_names[name]
+        return name, self.materials[name].get('transmission', 0) > 0, self.placings[name], self.color_names[name]
 
     def common_placing(self, material):
         """The placing of the first image of a material."""

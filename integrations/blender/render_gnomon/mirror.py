@@ -27,8 +27,8 @@ class Node:
 class Content:
     """A scene. Things have keys, by which they are found again.
 
-    textures: arrays. materials, lamps: properties, always the same ones for a kind; those that end in "_texture" are keys of textures, and
-    enumerators are names. meshes: lists of Part. world: arguments of gnomon.Scene.set_world, or None.
+    textures: arrays. materials, lamps: properties, of which those that are missing have the defaults of the module; those that end in
+    "_texture" are keys of textures, and enumerators are names. meshes: lists of Part. world: arguments of gnomon.Scene.set_world, or None.
     An array or a list of parts that changed is another object.
     """
 
@@ -46,6 +46,8 @@ class Mirror:
     def __init__(self, gnomon):
         self.enumerations = {'kind': gnomon.LampKind, 'area_shape': gnomon.AreaShape, 'shadow_kind': gnomon.ShadowKind,
                              'alpha_mode': gnomon.AlphaMode}
+        new = gnomon.Scene()
+        self.defaults = {type(thing): thing for thing in (new.add_material(), new.add_lamp())}
         self.scene = gnomon.Scene()
         self.shown = Content()
         self.textures, self.materials, self.meshes, self.lamps, self.nodes = {}, {}, {}, {}, {}
@@ -112,8 +114,9 @@ class Mirror:
 
         return {name: value_of(name, value) for name, value in values.items()}
 
-    def edit_thing(self, thing, values, _):
-        thing.edit(**self.values_of(values))
+    def edit_thing(self, thing, values, old):
+        defaults = self.defaults[type(thing)]
+        thing.edit(**{name: getattr(defaults, name) for name in old.keys() - values.keys()}, **self.values_of(values))
 
     def add_material(self, values):
         return self.scene.add_material(**self.values_of(values))
