@@ -14,6 +14,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -95,6 +96,8 @@ static double edge_of(int level)
 }
 
 struct WorldOcclusion::Box {
+  /** The distance between probes is edge_of() it. */
+  int level = 0;
   double edge = 1.0;
   /** Place of the first probe. */
   glm::ivec3 first{0};
@@ -377,31 +380,44 @@ std::vector<SurfacePoint> WorldOcclusion::seen_points(const draw::View &view) co
   return points;
 }
 
-WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> points)
+/**
+ * The ends of probes at distances of \a edge that light \a points, which are not empty. The outermost probes are up to
+ * one edge within them.
+ */
+static std::pair<glm::dvec3, glm::dvec3> ends_around(std::span<const SurfacePoint> points, double edge)
+{
+  glm::dvec3 low;
+  glm::dvec3 high;
+  for (int axis = 0; axis < 3; axis++) {
+    std::vector<double> lows;
+    std::vector<double> highs;
+    for (const SurfacePoint &point : points) {
+      const auto place = double(point.position_ws[axis]);
+      // A surface may be 0.75 edge outside of the probes. One that faces out of the box needs a probe outside.
+      const double outward = std::clamp(3.0 * double(point.normal_ws[axis]), -0.75, 0.75);
+      constexpr double margin = 0.25;
+      lows.push_back(place - edge * (margin + std::max(-outward, 0.0)));
+      highs.push_back(place + edge * (margin + std::max(outward, 0.0)));
+    }
+    // A few points, such as those seen through a window, do not make the probes of all others sparse.
+    const auto left_out = std::ptrdiff_t(points.size() / 32);
+    std::ranges::nth_element(lows, lows.begin() + left_out);
+    std::ranges::nth_element(highs, highs.end() - 1 - left_out);
+    low[axis] = *(lows.begin() + left_out);
+    high[axis] = *(highs.end() - 1 - left_out);
+  }
+  return {low, high};
+}
+
+WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> points) const
 {
   // Bounds of far scenes may be infinite.
   constexpr double far = 1e18;
   glm::dvec3 low = glm::clamp(glm::dvec3(bounds_ws_.min), -far, far);
   glm::dvec3 high = glm::clamp(glm::dvec3(bounds_ws_.max), -far, far);
-  // Sets low and high for probes at distances of edge. The outermost probes are up to one edge within them.
   const auto set_ends = [&](double edge) {
-    for (int axis = 0; axis < 3 && !points.empty(); axis++) {
-      std::vector<double> lows;
-      std::vector<double> highs;
-      for (const SurfacePoint &point : points) {
-        const auto place = double(point.position_ws[axis]);
-        // A surface may be 0.75 edge outside of the probes. One that faces out of the box needs a probe outside.
-        const double outward = std::clamp(3.0 * double(point.normal_ws[axis]), -0.75, 0.75);
-        constexpr double margin = 0.25;
-        lows.push_back(place - edge * (margin + std::max(-outward, 0.0)));
-        highs.push_back(place + edge * (margin + std::max(outward, 0.0)));
-      }
-      // A few points, such as those seen through a window, do not make the probes of all others sparse.
-      const auto left_out = std::ptrdiff_t(points.size() / 32);
-      std::ranges::nth_element(lows, lows.begin() + left_out);
-      std::ranges::nth_element(highs, highs.end() - 1 - left_out);
-      low[axis] = *(lows.begin() + left_out);
-      high[axis] = *(highs.end() - 1 - left_out);
+    if (!points.empty()) {
+      std::tie(low, high) = ends_around(points, edge);
     }
   };
   set_ends(0.0);
@@ -412,9 +428,8 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
   const double edge_min = std::max({std::cbrt(size.x * size.y * size.z / WORLD_PROBE_MAX) / 1.25,
                                     4.0 * largest(size) / WORLD_PROBE_MAX / 1.25, 1e-6 * magnitude, 1e-18});
   Box box;
-  int level = int(std::ceil(levels_per_octave * std::log2(edge_min)));
-  for (;; level++) {
-    box.edge = edge_of(level);
+  for (box.level = int(std::ceil(levels_per_octave * std::log2(edge_min)));; box.level++) {
+    box.edge = edge_of(box.level);
     set_ends(box.edge);
     box.first = glm::ivec3(glm::ceil(low / box.edge - place_offset));
     glm::ivec3 last(glm::floor(high / box.edge - place_offset));
@@ -427,16 +442,20 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
     }
     box.count = last - box.first + 1;
     if (box.count.x * box.count.y * box.count.z <= WORLD_PROBE_MAX) {
-      break;
+      return box;
     }
   }
+}
+
+void WorldOcclusion::fill(Box &box)
+{
   std::map<Place, Probe> probes;
   std::vector<Place> places;
   for (int z = 0; z < box.count.z; z++) {
     for (int y = 0; y < box.count.y; y++) {
       for (int x = 0; x < box.count.x; x++) {
         const glm::ivec3 place = box.first + glm::ivec3(x, y, z);
-        places.push_back({level, place.x, place.y, place.z});
+        places.push_back({box.level, place.x, place.y, place.z});
         auto found = probes_.extract(places.back());
         box.probes.push_back(found ? &probes.insert(std::move(found)).position->second : &probes[places.back()]);
       }
@@ -466,7 +485,6 @@ WorldOcclusion::Box WorldOcclusion::box_around(std::span<const SurfacePoint> poi
   });
   rays_traced_ += traced;
   box.sights.assign(places.size(), {});
-  return box;
 }
 
 void WorldOcclusion::look(std::span<const SurfacePoint> points, Box &box) const
@@ -524,13 +542,9 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
   }
   const std::vector<SurfacePoint> points = seen_points(view);
   Box box = box_around(points);
+  fill(box);
   look(points, box);
   count_ = box.count;
-  struct Weighted {
-    Light parts;
-    float weight = 0.0F;
-  };
-  constexpr float unseen_weight = 1e-2F;
   constexpr double seen_least = 0.05;
   std::vector<Weighted> probes(box.probes.size());
   for (std::size_t i = 0; i < probes.size(); i++) {
@@ -542,13 +556,28 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
       probes[i] = {box.probes[i]->parts, seen};
     }
   }
+  spread(box, probes);
+  block.probe_count = glm::vec4(count_, 0.0F);
+  block.probe_scale = glm::vec4(glm::vec3(float(1.0 / box.edge)), 0.0F);
+  block.probe_offset = glm::vec4(glm::vec3(-glm::dvec3(box.first) - place_offset), 0.0F);
+  block.whole_positive = glm::vec4(whole_.positive, 0.0F);
+  block.whole_negative = glm::vec4(whole_.negative, 0.0F);
+  for (std::size_t i = 0; i < probes.size(); i++) {
+    block.probes[2 * i] = glm::vec4(glm::sqrt(probes[i].parts.positive), probes[i].weight);
+    block.probes[2 * i + 1] = glm::vec4(glm::sqrt(probes[i].parts.negative), 0.0F);
+  }
+}
+
+void WorldOcclusion::spread(const Box &box, std::span<Weighted> probes) const
+{
+  constexpr float unseen_weight = 1e-2F;
   const bool has_seen = std::ranges::any_of(probes, [](const Weighted &probe) { return probe.weight > 0.0F; });
   // A probe that a seen neighbour sees has its own parts. The others, such as those behind a wall or within a body,
   // have the mean of their neighbours.
   bool are_neighbours_seen = true;
   for (bool is_changed = has_seen; is_changed; are_neighbours_seen = false) {
     is_changed = false;
-    const std::vector<Weighted> before = probes;
+    const std::vector<Weighted> before(probes.begin(), probes.end());
     for (std::size_t i = 0; i < probes.size(); i++) {
       Light sum;
       float count = 0.0F;
@@ -572,15 +601,6 @@ void WorldOcclusion::write(const draw::View &view, shared::WorldBlock &block)
         is_changed = true;
       }
     }
-  }
-  block.probe_count = glm::vec4(count_, 0.0F);
-  block.probe_scale = glm::vec4(glm::vec3(float(1.0 / box.edge)), 0.0F);
-  block.probe_offset = glm::vec4(glm::vec3(-glm::dvec3(box.first) - place_offset), 0.0F);
-  block.whole_positive = glm::vec4(whole_.positive, 0.0F);
-  block.whole_negative = glm::vec4(whole_.negative, 0.0F);
-  for (std::size_t i = 0; i < probes.size(); i++) {
-    block.probes[2 * i] = glm::vec4(glm::sqrt(probes[i].parts.positive), probes[i].weight);
-    block.probes[2 * i + 1] = glm::vec4(glm::sqrt(probes[i].parts.negative), 0.0F);
   }
 }
 

@@ -90,9 +90,18 @@ class WorldOcclusion {
   void light_rays();
   void add_up(std::size_t variant, Probe &probe) const;
   [[nodiscard]] std::vector<SurfacePoint> seen_points(const draw::View &view) const;
-  /** The probes around \a points. */
-  Box box_around(std::span<const SurfacePoint> points);
+  /** A box without probes around \a points, or around all casters if there are none. */
+  [[nodiscard]] Box box_around(std::span<const SurfacePoint> points) const;
+  /** Give a box its probes. Traces those that are new. */
+  void fill(Box &box);
   void look(std::span<const SurfacePoint> points, Box &box) const;
+  /** The light at a probe of a box, and its weight beside others. */
+  struct Weighted {
+    Light parts;
+    float weight = 0.0F;
+  };
+  /** Give probes without a weight, which no point sees, light by their neighbours. \a probes: of \a box */
+  void spread(const Box &box, std::span<Weighted> probes) const;
   [[nodiscard]] glm::ivec3 place_of(std::size_t probe) const;
 
   CasterTree casters_;
