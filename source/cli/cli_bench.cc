@@ -129,6 +129,41 @@ void bench_left_out(const BenchOptions &options)
                             {"rows", json}});
 }
 
+/** Prints a measurement. \a base: that of 8 lamps in the same kind of hall */
+nlohmann::json print_lamps(const measure::LampsCost &row, const measure::LampsCost &base)
+{
+  const measure::Spread lists = measure::spread_of(row.seconds_of_lists);
+  const double ratio = measure::median_ratio(row.seconds(), base.seconds());
+  nlohmann::json out{{"hall", row.hall},
+                     {"lamps", row.lamp_count},
+                     {"edge_m", row.edge_m},
+                     {"memory_bytes", row.memory_bytes},
+                     {"non_finite", row.non_finite_count},
+                     {"has_lists", row.has_lists},
+                     {"seconds_of_lists", to_json(lists)},
+                     {"ratio_to_8", ratio}};
+  std::string all_text;
+  std::string gain_text;
+  if (!row.seconds_of_all.empty()) {
+    const measure::Spread all = measure::spread_of(row.seconds_of_all);
+    const double gain = measure::median_ratio(row.seconds_of_lists, row.seconds_of_all);
+    all_text = to_text(all, 1e-3) + (row.has_lists ? "" : " *");
+    gain_text = fmt::format("{:.2f}", gain);
+    out["seconds_of_all"] = to_json(all);
+    out["lists_to_all"] = gain;
+  }
+  std::string first_text;
+  if (!row.seconds_of_first.empty()) {
+    const measure::Spread first = measure::spread_of(row.seconds_of_first);
+    first_text = to_text(first, 1e-3);
+    out["seconds_of_first"] = to_json(first);
+  }
+  fmt::print("{:<8} {:>6} {:>7.1f} {:>8.1f}  {:<30}  {:<30} {:>10} {:>6.2f}  {}{}\n", row.hall, row.lamp_count,
+             row.edge_m, double(row.memory_bytes) / 0x1p20, to_text(lists, 1e-3) + (row.has_lists ? " *" : ""),
+             all_text, gain_text, ratio, first_text, row.non_finite_count > 0 ? "  not finite" : "");
+  return out;
+}
+
 void bench_lamps(const BenchOptions &options)
 {
   const std::unique_ptr<gpu::Device> device = create_device(options.backend);
@@ -149,35 +184,7 @@ void bench_lamps(const BenchOptions &options)
   for (const measure::LampsCost &row : costs) {
     const auto base = std::ranges::find_if(
         costs, [&](const measure::LampsCost &other) { return other.hall == row.hall && other.lamp_count == 8; });
-    const measure::Spread lists = measure::spread_of(row.seconds_of_lists);
-    const double ratio = measure::median_ratio(row.seconds(), base->seconds());
-    nlohmann::json &out = json.emplace_back(nlohmann::json{{"hall", row.hall},
-                                                           {"lamps", row.lamp_count},
-                                                           {"edge_m", row.edge_m},
-                                                           {"memory_bytes", row.memory_bytes},
-                                                           {"non_finite", row.non_finite_count},
-                                                           {"has_lists", row.has_lists},
-                                                           {"seconds_of_lists", to_json(lists)},
-                                                           {"ratio_to_8", ratio}});
-    std::string all_text;
-    std::string gain_text;
-    if (!row.seconds_of_all.empty()) {
-      const measure::Spread all = measure::spread_of(row.seconds_of_all);
-      const double gain = measure::median_ratio(row.seconds_of_lists, row.seconds_of_all);
-      all_text = to_text(all, 1e-3) + (row.has_lists ? "" : " *");
-      gain_text = fmt::format("{:.2f}", gain);
-      out["seconds_of_all"] = to_json(all);
-      out["lists_to_all"] = gain;
-    }
-    std::string first_text;
-    if (!row.seconds_of_first.empty()) {
-      const measure::Spread first = measure::spread_of(row.seconds_of_first);
-      first_text = to_text(first, 1e-3);
-      out["seconds_of_first"] = to_json(first);
-    }
-    fmt::print("{:<8} {:>6} {:>7.1f} {:>8.1f}  {:<30}  {:<30} {:>10} {:>6.2f}  {}{}\n", row.hall, row.lamp_count,
-               row.edge_m, double(row.memory_bytes) / 0x1p20, to_text(lists, 1e-3) + (row.has_lists ? " *" : ""),
-               all_text, gain_text, ratio, first_text, row.non_finite_count > 0 ? "  not finite" : "");
+    json.push_back(print_lamps(row, *base));
     if (row.hall == "growing" && row.lamp_count <= 1024) {
       counts.push_back(row.lamp_count);
       medians.push_back(measure::spread_of(row.seconds()).median);

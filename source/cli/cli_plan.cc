@@ -75,6 +75,52 @@ std::string pictures_of(const PlanOptions &options, const std::string &scene)
   return scene_name(options.pictures, scene);
 }
 
+/** Adds the scene at \a path and its parts to \a plan. \a device: nullptr: the costs are those of the options. */
+void add_scene(const PlanOptions &options, const std::string &path, gpu::Device *device, output::Roles &roles,
+               WorkPlan &plan)
+{
+  RenderOptions render = options.render;
+  render.scene = path;
+  render.output = pictures_of(options, path);
+  render.check();
+  if (fs::path(render.output).extension() != ".exr") {
+    throw UsageError(fmt::format("--pictures '{}' does not end in .exr", render.output));
+  }
+  const FrameSequence frames(render.frames, render.output);
+  // The first picture stands for the folder of all frames, because their names differ by the number only.
+  const fs::path first = frames.path(0);
+  if (first.has_parent_path() && !fs::is_directory(first.parent_path())) {
+    throw std::runtime_error(
+        fmt::format("--pictures '{}': the folder '{}' does not exist", render.output, first.parent_path().string()));
+  }
+  for (int i = 0; i < frames.count(); i++) {
+    roles.add_output(frames.path(i), "--pictures of " + path);
+  }
+  const bool can_divide_pictures =
+      render.debug.empty() && render.aov.empty() && render.engine_settings().noise_threshold == 0.0F;
+  if (options.tile_count > 1 && !can_divide_pictures) {
+    throw UsageError("--tiles divides pictures, and --aov, --debug and --noise-threshold need whole ones");
+  }
+  if (options.tile_count > render.size_px().y) {
+    throw UsageError(fmt::format("--tiles {}: the picture has {} rows", options.tile_count, render.size_px().y));
+  }
+  MeasuredScene measured = measure_scene(render, device, roles);
+  if (!device) {
+    measured.cost.sample_seconds = options.seconds_per_frame / render.samples;
+  }
+  plan.scenes.push_back({path, measured.fingerprint, render.output});
+  const WorkOfScene work{.scene = plan.scenes.size() - 1,
+                         .is_animated = frames.is_animated(),
+                         .first_frame = frames.first(),
+                         .last_frame = frames.last(),
+                         .sample_count = render.samples,
+                         .tile_count = options.tile_count,
+                         .can_divide_pictures = can_divide_pictures,
+                         .pictures = render.output,
+                         .cost = measured.cost};
+  plan.part_seconds = std::max(plan.part_seconds, add_parts(plan, work, options.target_seconds));
+}
+
 Status plan(const PlanOptions &options, const CLI::App &command)
 {
   if (options.render.scenes.empty()) {
@@ -95,46 +141,7 @@ Status plan(const PlanOptions &options, const CLI::App &command)
   const std::unique_ptr<gpu::Device> device =
       options.seconds_per_frame > 0.0 ? nullptr : create_device(options.render.backend);
   for (const std::string &path : options.render.scenes) {
-    RenderOptions render = options.render;
-    render.scene = path;
-    render.output = pictures_of(options, path);
-    render.check();
-    if (fs::path(render.output).extension() != ".exr") {
-      throw UsageError(fmt::format("--pictures '{}' does not end in .exr", render.output));
-    }
-    const FrameSequence frames(render.frames, render.output);
-    // The first picture stands for the folder of all frames, because their names differ by the number only.
-    const fs::path first = frames.path(0);
-    if (first.has_parent_path() && !fs::is_directory(first.parent_path())) {
-      throw std::runtime_error(
-          fmt::format("--pictures '{}': the folder '{}' does not exist", render.output, first.parent_path().string()));
-    }
-    for (int i = 0; i < frames.count(); i++) {
-      roles.add_output(frames.path(i), "--pictures of " + path);
-    }
-    const bool can_divide_pictures =
-        render.debug.empty() && render.aov.empty() && render.engine_settings().noise_threshold == 0.0F;
-    if (options.tile_count > 1 && !can_divide_pictures) {
-      throw UsageError("--tiles divides pictures, and --aov, --debug and --noise-threshold need whole ones");
-    }
-    if (options.tile_count > render.size_px().y) {
-      throw UsageError(fmt::format("--tiles {}: the picture has {} rows", options.tile_count, render.size_px().y));
-    }
-    MeasuredScene measured = measure_scene(render, device.get(), roles);
-    if (!device) {
-      measured.cost.sample_seconds = options.seconds_per_frame / render.samples;
-    }
-    plan.scenes.push_back({path, measured.fingerprint, render.output});
-    const WorkOfScene work{.scene = plan.scenes.size() - 1,
-                           .is_animated = frames.is_animated(),
-                           .first_frame = frames.first(),
-                           .last_frame = frames.last(),
-                           .sample_count = render.samples,
-                           .tile_count = options.tile_count,
-                           .can_divide_pictures = can_divide_pictures,
-                           .pictures = render.output,
-                           .cost = measured.cost};
-    plan.part_seconds = std::max(plan.part_seconds, add_parts(plan, work, options.target_seconds));
+    add_scene(options, path, device.get(), roles, plan);
   }
   plan.memory_bytes = device ? memory_bytes_max() : 0;
   write_plan(options.plan, plan);

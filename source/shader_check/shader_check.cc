@@ -157,9 +157,14 @@ std::vector<CheckMessage> check_shader(const gpu::ShaderDesc &desc, const gpu::S
   return messages;
 }
 
-/** Adds the files that \a compilation has read or not found, and those of \a read and \a missed, to \a result. */
-static void add_files(const Compilation &compilation, const std::set<std::string> &read,
-                      const std::set<std::string> &missed, ProgramCheck &result)
+/** Files that were read, and paths at which there is none. */
+struct TriedFiles {
+  std::set<std::string> read;
+  std::set<std::string> missed;
+};
+
+/** Adds the files that \a compilation has read or not found, and \a tried, to \a result. */
+static void add_files(const Compilation &compilation, const TriedFiles &tried, ProgramCheck &result)
 {
   const auto add_new = [](std::vector<std::string> &list, const auto &paths) {
     for (const std::string &path : paths) {
@@ -174,8 +179,38 @@ static void add_files(const Compilation &compilation, const std::set<std::string
     }
     add_new(result.absent, source->absent());
   }
-  add_new(result.files, read);
-  add_new(result.absent, missed);
+  add_new(result.files, tried.read);
+  add_new(result.absent, tried.missed);
+}
+
+/**
+ * The target of the options, or that which follows from the files, which are sorted by stage. \a second: the first of
+ * two files of one stage. \a tried: the choice reads includes under any condition.
+ */
+static TargetChoice target_of(const std::vector<Program::File> &sorted,
+                              std::vector<Program::File>::const_iterator second, const gpu::ShaderFiles &files,
+                              const ProgramOptions &options, TriedFiles &tried)
+{
+  if (options.target) {
+    return {*options.target, {}};
+  }
+  if (second != sorted.end()) {
+    return {CheckTarget::OpenGl,
+            fmt::format("{} and {} are of one stage, which OpenGL alone links", second->path, std::next(second)->path)};
+  }
+  const bool has_binary = std::ranges::any_of(sorted, [&](const Program::File &file) {
+    return files(file.path).value_or("").find('\0') != std::string_view::npos;
+  });
+  if (has_binary) {
+    // That is no text, which says nothing.
+    return {CheckTarget::Vulkan12, {}};
+  }
+  const gpu::ShaderFiles noted = [&](std::string_view path) {
+    const std::optional<std::string_view> text = files(path);
+    (text ? tried.read : tried.missed).emplace(path);
+    return text;
+  };
+  return choose_target(sorted, noted, options.include_folders);
 }
 
 ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files, const ProgramOptions &options)
@@ -184,37 +219,14 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
   with_large_stack([&] {
     std::vector<Program::File> sorted = program.files;
     std::ranges::stable_sort(sorted, {}, &Program::File::stage);
-    // By the choice of the target, which reads includes under any condition.
-    std::set<std::string> read;
-    std::set<std::string> missed;
+    TriedFiles tried;
     CheckSettings settings{{}, false, options.features};
     settings.options.levels = options.levels;
     settings.options.is_strict = options.is_strict;
-    const auto second = std::ranges::adjacent_find(sorted, {}, &Program::File::stage);
-    if (options.target) {
-      result.target = *options.target;
-    }
-    else if (second != sorted.end()) {
-      result.target = CheckTarget::OpenGl;
-      result.target_reason =
-          fmt::format("{} and {} are of one stage, which OpenGL alone links", second->path, std::next(second)->path);
-    }
-    else if (std::ranges::any_of(sorted, [&](const Program::File &file) {
-               return files(file.path).value_or("").find('\0') != std::string_view::npos;
-             })) {
-      // That is no text, which says nothing.
-      result.target = CheckTarget::Vulkan12;
-    }
-    else {
-      const gpu::ShaderFiles noted = [&](std::string_view path) {
-        const std::optional<std::string_view> text = files(path);
-        (text ? read : missed).emplace(path);
-        return text;
-      };
-      TargetChoice choice = choose_target(sorted, noted, options.include_folders);
-      result.target = choice.target;
-      result.target_reason = std::move(choice.reason);
-    }
+    const auto second = std::ranges::adjacent_find(std::as_const(sorted), {}, &Program::File::stage);
+    TargetChoice choice = target_of(sorted, second, files, options, tried);
+    result.target = choice.target;
+    result.target_reason = std::move(choice.reason);
     settings.options.target = result.target;
     Checker checker(program.name, program.defines, settings);
     for (const Program::File &file : sorted) {
@@ -230,7 +242,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
       }
       else {
         checker.refuse("include", file.path, 1, "there is no such file, or it cannot be read");
-        missed.insert(file.path);
+        tried.missed.insert(file.path);
       }
     }
     checker.finish();
@@ -238,7 +250,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
     if (!result.has_errors()) {
       result.spirv = checker.spirv();
     }
-    add_files(checker.compilation(), read, missed, result);
+    add_files(checker.compilation(), tried, result);
   });
   return result;
 }

@@ -107,6 +107,38 @@ std::vector<Handle<Mesh>> MeshImporter::deformed_meshes_of(int gltf_mesh, int sk
   return meshes;
 }
 
+bool MeshImporter::read_for_material(const Model::Primitive &primitive, PrimitiveReader &reader, Mesh &mesh)
+{
+  mesh.colors = reader.read_colors();
+  const bool is_surface = mesh.topology == scene::Topology::Triangles;
+  if (!is_surface) {
+    mesh.tangents = reader.read_tangents();
+  }
+  mesh.material = is_surface
+                      ? materials_.handle_of(primitive.material)
+                      : materials_.handle_for_lines(primitive.material, reader.has_normals(), !mesh.tangents.empty());
+  const std::vector<int> &uv_sets = materials_.uv_sets(mesh.material);
+  // A surface function reads the sets that there are.
+  const bool has_function = bool(scene_.materials()[mesh.material].surface_function);
+  const auto read_uvs = [&](std::size_t i) {
+    const bool is_read = i < uv_sets.size() &&
+                         (!has_function || primitive.attributes.contains("TEXCOORD_" + std::to_string(uv_sets[i])));
+    return is_read ? reader.read_uvs(uv_sets[i]) : std::vector<glm::vec2>();
+  };
+  mesh.uvs = read_uvs(0);
+  mesh.second_uvs = read_uvs(1);
+  if (const scene::TextureSlot *slot = tangent_slot(mesh.material)) {
+    mesh.tangents = is_surface ? reader.read_tangents() : std::move(mesh.tangents);
+    const bool has_uvs_for_tangents =
+        mesh.tangents.empty() && mesh.uv_set(slot->uv_set).empty() && primitive.attributes.contains("TEXCOORD_0");
+    if (has_uvs_for_tangents) {
+      mesh.uvs = reader.read_uvs(0);
+    }
+    return has_uvs_for_tangents;
+  }
+  return false;
+}
+
 Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_index, std::optional<int> deforming_skin)
 {
   const Model::Mesh &source = file_.model.meshes[gltf_mesh];
@@ -122,37 +154,12 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
     spend(reader.element_count());
     mesh = reader.read();
     if (!mesh.indices.empty()) {
-      mesh.colors = reader.read_colors();
-      const bool is_surface = mesh.topology == scene::Topology::Triangles;
-      if (!is_surface) {
-        mesh.tangents = reader.read_tangents();
-      }
-      mesh.material =
-          is_surface ? materials_.handle_of(primitive.material)
-                     : materials_.handle_for_lines(primitive.material, reader.has_normals(), !mesh.tangents.empty());
-      const std::vector<int> &uv_sets = materials_.uv_sets(mesh.material);
-      // A surface function reads the sets that there are.
-      const bool has_function = bool(scene_.materials()[mesh.material].surface_function);
-      const auto read_uvs = [&](std::size_t i) {
-        const bool is_read = i < uv_sets.size() &&
-                             (!has_function || primitive.attributes.contains("TEXCOORD_" + std::to_string(uv_sets[i])));
-        return is_read ? reader.read_uvs(uv_sets[i]) : std::vector<glm::vec2>();
-      };
-      mesh.uvs = read_uvs(0);
-      mesh.second_uvs = read_uvs(1);
-      if (const scene::TextureSlot *slot = tangent_slot(mesh.material)) {
-        mesh.tangents = is_surface ? reader.read_tangents() : std::move(mesh.tangents);
-        has_uvs_for_tangents =
-            mesh.tangents.empty() && mesh.uv_set(slot->uv_set).empty() && primitive.attributes.contains("TEXCOORD_0");
-        if (has_uvs_for_tangents) {
-          mesh.uvs = reader.read_uvs(0);
-        }
-      }
+      has_uvs_for_tangents = read_for_material(primitive, reader, mesh);
       if (deforming_skin) {
         make_missing_tangents(mesh, has_uvs_for_tangents, what);
         spend(reader.file_vertices().size() * deformed_width(primitive, *deforming_skin >= 0));
         deformed = read_deformed(file_, primitive, *deforming_skin, mesh, reader.file_vertices(), what, warnings_);
-        deformed->has_flat_normals = is_surface && !reader.has_normals();
+        deformed->has_flat_normals = mesh.topology == scene::Topology::Triangles && !reader.has_normals();
       }
     }
   }

@@ -17,6 +17,8 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
+class PrimitiveReader;
+
 /** Adds meshes to a scene, one for each glTF primitive, at its first use. */
 class MeshImporter {
  public:
@@ -76,6 +78,11 @@ class MeshImporter {
   /** An empty deform: of a mesh that is not deformed. \return a handle that names nothing where it is left out. */
   [[nodiscard]] scene::Handle<scene::Mesh> read_primitive(int gltf_mesh, std::size_t primitive_index,
                                                           std::optional<int> deforming_skin);
+  /**
+   * Reads the material of a mesh and the streams that it needs, but for tangents that are made. \return whether the uvs
+   * are for such tangents alone
+   */
+  [[nodiscard]] bool read_for_material(const Model::Primitive &primitive, PrimitiveReader &reader, scene::Mesh &mesh);
   /** The slot whose uvs the tangents follow, which may have no texture; nullptr if the material needs no tangents. */
   [[nodiscard]] const scene::TextureSlot *tangent_slot(scene::Handle<scene::Material> handle) const;
   /** \a drops_uvs: no texture reads the uvs, so that they are removed afterwards. */
