@@ -173,7 +173,8 @@ CasterTree::Mask CasterTree::mask_of(const scene::Scene &scene, const scene::Mes
   if (!render_scene::is_masked(scene, mesh) || render_scene::has_surface_function(scene, material)) {
     return {};
   }
-  Mask mask{.cutoff = material.alpha_cutoff / material.alpha};
+  Mask mask;
+  mask.cutoff = material.alpha_cutoff / material.alpha;
   if (!render_scene::is_drawable(scene, mesh, slot)) {
     return mask;
   }
@@ -186,6 +187,7 @@ CasterTree::Mask CasterTree::mask_of(const scene::Scene &scene, const scene::Mes
     image->second = Texels(scene.images()[handle]);
   }
   mask.texels = &image->second;
+  mask.opaque_cover = mask.cover(1.0F);
   return mask;
 }
 
@@ -207,10 +209,11 @@ bool CasterTree::is_covered(const Instance &instance, std::uint32_t triangle, fl
     return true;
   }
   const std::vector<glm::vec3> &alphas = instance.mesh->alphas;
-  const float alpha = alphas.empty() ? 1.0F : glm::dot(alphas[triangle], glm::vec3(1.0F - u - v, u, v));
+  const float cover = alphas.empty() ? instance.mask.opaque_cover
+                                     : instance.mask.cover(glm::dot(alphas[triangle], glm::vec3(1.0F - u - v, u, v)));
   // As good as random.
   const double place = 1013.0 * double(u) + 757.0 * double(v);
-  return place - std::floor(place) < double(instance.mask.cover(alpha));
+  return place - std::floor(place) < double(cover);
 }
 
 std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &scene)

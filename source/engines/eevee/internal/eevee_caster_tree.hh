@@ -110,6 +110,8 @@ class CasterTree {
     const Texels *texels = nullptr;
     /** Least product of the alphas of texture and vertices that is drawn; 0 for a mesh without a mask. */
     float cutoff = 0.0F;
+    /** cover(1), for the many rays that meet meshes without alphas of vertices. */
+    float opaque_cover = 1.0F;
 
     /** The part of a surface that it covers. \a alpha: of the vertices there */
     [[nodiscard]] float cover(float alpha) const;
