@@ -63,8 +63,8 @@ Changes changes(const Mesh &a, const Mesh &b)
                           same_elements(a.normals, b.normals) && same_elements(a.uvs, b.uvs) &&
                           same_elements(a.second_uvs, b.second_uvs) && same_elements(a.tangents, b.tangents) &&
                           same_elements(a.colors, b.colors);
-  return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(!same_layout, Layout) |
-         bit_if(a.material != b.material, Material);
+  return bit_if(a.name != b.name || a.extras != b.extras, Name) | bit_if(!same_shape, Shape) |
+         bit_if(!same_layout, Layout) | bit_if(a.material != b.material, Material);
 }
 
 Changes changes(const Image &a, const Image &b)
