@@ -81,10 +81,15 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
+/** All but extras of other programs, on which no picture depends. */
 template <typename Thing>
 void add_properties(Hasher &hash, const Thing &thing)
 {
-  Thing::for_each_property([&](const auto &row) { hash.add(thing.*row.member); });
+  Thing::for_each_property([&](const auto &row) {
+    if (row.name != "extras") {
+      hash.add(thing.*row.member);
+    }
+  });
 }
 
 void add(Hasher &hash, const scene::Scene &scene, const scene::TextureSlot &slot)

@@ -5,6 +5,7 @@
 #include "internal/gltf_camera.hh"
 #include "internal/gltf_extra.hh"
 #include "internal/gltf_file.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_write_animation.hh"
@@ -77,6 +78,7 @@ class SceneWriter {
     JsonText document;
     document.add("asset", R"({"generator":"Gnomon","version":"2.0"})");
     add_extensions(document);
+    add_extras({}, {scene_.file_extras}, "document", document);
     document.add("scene", "0");
     document.add("scenes", '[' + scene_json(roots) + ']');
     const auto add = [&document](std::string_view key, const JsonText &array) {
@@ -221,11 +223,11 @@ class SceneWriter {
       json.add("nodes", roots.array());
     }
     const bool is_default = scene_.world() == scene_.default_world && scene_.placed_lamps().empty();
+    JsonText extras;
     if (scene_.world() && !is_default) {
-      JsonText extras;
       add_world_extras(*scene_.world(), folder_, buffer_, extras);
-      json.add("extras", extras.object());
     }
+    add_extras(std::move(extras), {scene_.extras}, "scene", json);
     return json.object();
   }
 
@@ -260,9 +262,10 @@ class SceneWriter {
     add_flags(node, extras);
     add_camera(node, json, extras);
     add_lamp(node, json, extras);
-    if (!extras.empty()) {
-      json.add("extras", extras.object());
-    }
+    // Files have no element for an area lamp but its node.
+    const Lamp *const lamp = scene_.lamps().find(node.lamp);
+    const bool is_area = lamp != nullptr && lamp->kind == scene::LampKind::Area;
+    add_extras(std::move(extras), {node.extras, is_area ? lamp->extras : std::string_view()}, what, json);
     return json.object();
   }
 

@@ -20,8 +20,9 @@ struct ExportError : std::runtime_error {
  *
  * import_gltf reads the same scene: node tree, matrices, meshes, materials, textures, images, lamps, cameras, flags,
  * the world, skins, morph targets and animations. The pose is the current one. Properties that glTF lacks are written
- * as extras (`gnomon_*`, see `doc/conventions.md`). The picture of a world that was read from a file stays there, and
- * the written file refers to it (ImportOptions::read_picture).
+ * as extras (`gnomon_*`, see `doc/conventions.md`), beside those of other programs: Node::extras and others; those of
+ * an area lamp with those of its nodes. The picture of a world that was read from a file stays there, and the written
+ * file refers to it (ImportOptions::read_picture).
  *
  * A node that shows the deformed mesh of another node is read with joints of its own below it, because glTF ignores the
  * transform of a node with a skin. A mesh that does not fit its rest shape (scene::fault_of), or whose node was
@@ -35,13 +36,13 @@ struct ExportError : std::runtime_error {
  * An existing file is replaced only after the new one is complete.
  *
  * \throws ExportError if a number is not finite, a name is not UTF-8 or has more than 1024 bytes, an image cannot be
- * encoded, or the file cannot be written.
+ * encoded, extras are neither empty nor a JSON object, or the file cannot be written.
  */
 void export_gltf(const scene::Scene &scene, const std::filesystem::path &path);
 
 /**
  * Parts of the file at \a path that export_gltf() does not write for a scene that was read from it, such as
- * "2 variants of materials" and "extra 'price' of node 'chair' and 4 others". Reads the file again. Empty: none, or the
+ * "2 variants of materials" and "extra 'price' of accessor 3 and 4 others". Reads the file again. Empty: none, or the
  * file is missing or not glTF.
  */
 [[nodiscard]] std::string left_out_of_export(const std::filesystem::path &path);

@@ -6,6 +6,7 @@
 #include "internal/gltf_decompress.hh"
 #include "internal/gltf_deform.hh"
 #include "internal/gltf_file.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_instances.hh"
 #include "internal/gltf_lamp.hh"
 #include "internal/gltf_lamp_units.hh"
@@ -110,7 +111,8 @@ class Importer {
         options_(options),
         progress_(progress),
         warnings_(std::move(warnings)),
-        meshes_(file, options, progress, warnings_, scene_)
+        extras_(file.model, warnings_),
+        meshes_(file, options, progress, extras_, warnings_, scene_)
   {
   }
 
@@ -134,6 +136,8 @@ class Importer {
     import_world(file_, visible_nodes(), options_.read_picture, warnings_, scene_);
     convert_lamps(options_.lamp_units, things_, warnings_, scene_);
     add_defaults();
+    scene_.file_extras = extras_.of(document_extras, 0);
+    scene_.extras = extras_.of("scenes", std::max(file_.model.scene, 0));
     scene_.warnings = warnings_.messages();
     return std::move(scene_);
   }
@@ -143,6 +147,7 @@ class Importer {
   const ImportOptions &options_;
   Progress &progress_;
   Warnings warnings_;
+  ForeignExtras extras_;
   Scene scene_;
   MeshImporter meshes_;
   ImportedThings things_;
@@ -243,16 +248,19 @@ class Importer {
     node.name = name.empty() ? "node " + std::to_string(index) : name;
     node.parent_from_node = parent_from_node;
     read_flags(file_.model.nodes[index], index, node);
+    node.extras = extras_.of("nodes", index);
     const std::vector<glm::dmat4> instances = instances_of(index);
     const std::size_t first_deformed = scene_.deformed_meshes.size();
     if (instances.empty()) {
       import_meshes(index, world, node);
     }
     if (std::optional<Lamp> lamp = lamp_on(file_, index, warnings_)) {
+      lamp->extras = extras_.of(lights_key, file_.model.nodes[index].light);
       node.lamp = scene_.add(std::move(*lamp));
       things_.lamps[file_.model.nodes[index].light].push_back(node.lamp);
     }
     if (std::optional<Camera> camera = camera_on(file_, index, warnings_)) {
+      camera->extras = extras_.of("cameras", file_.model.nodes[index].camera);
       node.camera = scene_.add(std::move(*camera));
       things_.cameras[file_.model.nodes[index].camera].push_back(node.camera);
     }

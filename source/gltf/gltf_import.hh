@@ -145,8 +145,9 @@ constexpr void ImportOptions::for_each_property(Visit &&visit)
  * Reads a glTF 2.0 file: `.gltf` with external files or data URIs, or `.glb`.
  *
  * The node tree of the default scene keeps its local transforms. Each mesh primitive becomes a mesh of its nodes.
- * `doc/conventions.md` defines units and extras (`gnomon_*`). Unsupported elements are left out and reported in
- * Scene::warnings. A camera is added if the file has none, and a lamp if it has neither a lamp nor a world.
+ * `doc/conventions.md` defines units and extras (`gnomon_*`), and which of other programs are kept. Unsupported
+ * elements are left out and reported in Scene::warnings. A camera is added if the file has none, and a lamp if it has
+ * neither a lamp nor a world.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
  * \throws UnknownVariant, ImportCancelled, ImportOutOfMemory

@@ -71,6 +71,7 @@ Field<Mesh> rows_field(std::string name, std::vector<Vector> Mesh::*member, std:
 
 const Fields<Mesh> mesh_fields = {
     plain_field<Mesh>("name", &Mesh::name, "For messages and files."),
+    plain_field<Mesh>("extras", &Mesh::extras, std::string(scene::extras_sentence)),
     rows_field<glm::vec3>("positions", &Mesh::positions,
                           "N x 3 float32, m. Read-only; assign another array. edit() changes several arrays at once."),
     rows_field<glm::vec3>("normals", &Mesh::normals, "N x 3 float32, unit vectors. Read-only; assign another array."),

@@ -30,6 +30,11 @@ struct Mesh;
 struct SurfaceFunction;
 struct Texture;
 
+/** What the rows of `extras` say. */
+inline constexpr std::string_view extras_sentence =
+    "What other programs have added to the thing in its file: a JSON object, which export_gltf writes again. Empty: "
+    "nothing.";
+
 /** Smallest length above 0, metres. The square of a smaller one would underflow in float. */
 inline constexpr double smallest_length = 1e-12;
 
@@ -102,6 +107,7 @@ struct Lamp {
   float area_size_y = 1.0F;
   /** Has no effect on a hemi lamp. */
   LampShadow shadow{};
+  std::string extras{};
 
   bool operator==(const Lamp &) const = default;
 
@@ -116,6 +122,7 @@ constexpr void Lamp::for_each_property(Visit &&visit)
   using enum LampKind;
   visit(
       property(&Lamp::name, {.name = "name", .aspect = unsigned(Aspect::Name), .sentence = "For messages and files."}));
+  visit(property(&Lamp::extras, {.name = "extras", .aspect = unsigned(Aspect::Name), .sentence = extras_sentence}));
   visit(
       property(&Lamp::kind,
                {.name = "kind", .label = "Kind", .aspect = unsigned(Aspect::Shape), .sentence = "The kind of lamp."}));
@@ -355,6 +362,7 @@ struct Camera {
   int aperture_blades = 0;
   float aperture_rotation = 0.0F;
   float aperture_ratio = 1.0F;
+  std::string extras{};
 
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
@@ -368,6 +376,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
   constexpr unsigned any = bits(Perspective, Orthographic);
   visit(property(&Camera::name,
                  {.name = "name", .aspect = unsigned(Aspect::Name), .sentence = "For messages and files."}));
+  visit(property(&Camera::extras, {.name = "extras", .aspect = unsigned(Aspect::Name), .sentence = extras_sentence}));
   visit(property(&Camera::kind,
                  {.name = "kind", .label = "Kind", .aspect = lens, .sentence = "The kind of projection."}));
   visit(property(&Camera::vertical_angle, {.name = "vertical_angle",
@@ -627,6 +636,7 @@ struct Material {
   bool is_double_sided = false;
   /** Edits the surface; an invalid handle stands for none. */
   Handle<SurfaceFunction> surface_function{};
+  std::string extras{};
 
   [[nodiscard]] bool has_coat() const
   {
@@ -666,6 +676,7 @@ constexpr void Material::for_each_property(Visit &&visit)
   // In this range floats still distinguish texels.
   constexpr double texel_limit = 1e6;
   visit(property(&Material::name, {.name = "name", .aspect = unsigned(Name), .sentence = "For messages and files."}));
+  visit(property(&Material::extras, {.name = "extras", .aspect = unsigned(Name), .sentence = extras_sentence}));
   visit(property(&Material::base_color, {.name = "base_color",
                                          .label = "Base color",
                                          .max = 1,
@@ -965,6 +976,7 @@ struct Node {
   bool is_visible = true;
   bool casts_shadow = true;
   bool receives_shadow = true;
+  std::string extras{};
 
   /** All but the transform and the content. */
   template <typename Visit>
@@ -976,6 +988,7 @@ constexpr void Node::for_each_property(Visit &&visit)
 {
   using enum Aspect;
   visit(property(&Node::name, {.name = "name", .aspect = unsigned(Name), .sentence = "For messages and files."}));
+  visit(property(&Node::extras, {.name = "extras", .aspect = unsigned(Name), .sentence = extras_sentence}));
   visit(property(&Node::is_visible,
                  {.name = "is_visible",
                   .key = "visible",

@@ -192,6 +192,8 @@ struct Mesh {
   std::optional<HostShape> host_shape{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */
   Bounds bounds{};
+  /** What other programs have added to the glTF mesh that it is a primitive of, as extras_sentence says. */
+  std::string extras{};
 
   [[nodiscard]] bool has_uvs(int set) const
   {

@@ -147,6 +147,7 @@ class App {
   void isolate_selected();
   /** Areas in the active viewport select also covered objects, or again only visible ones. */
   void toggle_reach();
+  void toggle_extent();
   /**
    * Start fly mode: keys and pointer move the eye of the active viewport until Enter, Escape or a mouse button ends it.
    */

@@ -115,6 +115,15 @@ void App::toggle_reach()
   message(is_through ? "An area selects visible objects" : "An area selects visible and covered objects", false);
 }
 
+void App::toggle_extent()
+{
+  const bool is_whole = active().extent == overlay::Extent::Whole;
+  active().extent = is_whole ? overlay::Extent::Part : overlay::Extent::Whole;
+  message(
+      is_whole ? "An area selects objects of which a part is inside" : "An area selects objects that are wholly inside",
+      false);
+}
+
 void App::play(bool is_playing)
 {
   if (time_line_.is_empty()) {

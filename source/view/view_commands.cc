@@ -177,7 +177,7 @@ void select_box(App &app, Words words)
 {
   const auto from = glm::dvec2(pixel(words[0], words[1]));
   const auto to = glm::dvec2(pixel(words[2], words[3]));
-  drawn_viewport(app).select_area(document(app), overlay::rectangle(from, to), app.active().reach, false);
+  drawn_viewport(app).select_area(document(app), overlay::rectangle(from, to), false);
 }
 
 void clip(App &app, Words words)
@@ -199,7 +199,7 @@ void select_lasso(App &app, Words words)
   for (std::size_t i = 0; i < words.size(); i += 2) {
     path.emplace_back(pixel(words[i], words[i + 1]));
   }
-  drawn_viewport(app).select_area(document(app), path, app.active().reach, false);
+  drawn_viewport(app).select_area(document(app), path, false);
 }
 
 void expect_selected(App &app, Words words)

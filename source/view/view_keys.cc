@@ -95,6 +95,7 @@ const std::array bindings = std::to_array<Binding>({
     {{GLFW_KEY_H, alt}, [](App &app) { app.active().show_all(); }},
     {{GLFW_KEY_SLASH, 0}, [](App &app) { app.isolate_selected(); }},
     {{GLFW_KEY_Z, alt}, [](App &app) { app.toggle_reach(); }},
+    {{GLFW_KEY_W, alt}, [](App &app) { app.toggle_extent(); }},
     {{GLFW_KEY_Z, shift}, [](App &app) { app.active().has_wireframe = !app.active().has_wireframe; }},
     {{GLFW_KEY_B, alt}, [](App &app) { app.active().toggle_clip(); }},
     {{GLFW_KEY_G, 0}, transform<TransformKind::Move>},

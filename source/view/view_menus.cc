@@ -126,6 +126,9 @@ void App::show_view_menu()
   if (ImGui::MenuItem("X-ray: see and select through objects", "Alt+Z", active().reach == overlay::Reach::Through)) {
     toggle_reach();
   }
+  if (ImGui::MenuItem("Areas select what is wholly inside", "Alt+W", active().extent == overlay::Extent::Whole)) {
+    toggle_extent();
+  }
   ImGui::Separator();
   ImGui::MenuItem("Lamps, cameras and gizmo", nullptr, &active().has_overlays);
   ImGui::MenuItem("Wireframe of unlit", "Shift+Z", &active().has_wireframe);

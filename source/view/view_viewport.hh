@@ -51,10 +51,10 @@ class WindowViewport {
    */
   void pick(Document &document, glm::ivec2 pixel_px, bool adds = false);
   /**
-   * Select the nodes in an area: those that overlay::Overlay::select finds, and lamps and cameras. \a outline_px:
-   * pixels as for pick. \pre draw was called
+   * Select the nodes in an area: those that overlay::Overlay::select finds by `reach` and `extent`, and lamps and
+   * cameras. \a outline_px: pixels as for pick. \pre draw was called
    */
-  void select_area(Document &document, std::span<const glm::dvec2> outline_px, overlay::Reach reach, bool adds);
+  void select_area(Document &document, std::span<const glm::dvec2> outline_px, bool adds);
   /** Leave the selected nodes and their descendants out of this viewport's pictures. */
   void hide(const Document &document);
   /** Leave all but the selected nodes and their descendants out; the second call shows the others again. */
@@ -150,6 +150,8 @@ class WindowViewport {
   bool has_wireframe = false;
   /** Which nodes the pointer selects in an area. With Through, the surfaces of unlit are seen through. */
   overlay::Reach reach = overlay::Reach::Visible;
+  /** How much of a node must be in the area. */
+  overlay::Extent extent = overlay::Extent::Part;
 
  private:
   /** Background colour behind the picture. */

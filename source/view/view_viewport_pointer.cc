@@ -64,14 +64,13 @@ void WindowViewport::pick(Document &document, glm::ivec2 pixel_px, bool adds)
   document.click(overlay_->pick(drawn_view_, size_px_, from_below), adds);
 }
 
-void WindowViewport::select_area(Document &document, std::span<const glm::dvec2> outline_px, overlay::Reach reach,
-                                 bool adds)
+void WindowViewport::select_area(Document &document, std::span<const glm::dvec2> outline_px, bool adds)
 {
   std::vector<glm::dvec2> from_below;
   for (const glm::dvec2 &corner : outline_px) {
     from_below.emplace_back(corner.x, double(size_px_.y) - corner.y);
   }
-  std::vector<scene::Handle<scene::Node>> nodes = overlay_->select(drawn_view_, size_px_, from_below, reach);
+  std::vector<scene::Handle<scene::Node>> nodes = overlay_->select(drawn_view_, size_px_, from_below, reach, extent);
   const auto add = [&](scene::Handle<scene::Node> node, const glm::dmat4 &world) {
     const std::optional<glm::vec2> place = place_of(glm::dvec3(world[3]));
     if (place && overlay::is_inside(outline_px, glm::dvec2(*place)) && !is_hidden(document.scene(), node) &&
@@ -208,7 +207,7 @@ bool WindowViewport::take_area(Document &document, glm::vec2 corner)
       clip(area.points_px.front(), area.points_px.back());
     }
     else {
-      select_area(document, area.outline_px(), reach, io.KeyShift);
+      select_area(document, area.outline_px(), io.KeyShift);
     }
   }
   return true;

@@ -36,6 +36,7 @@ TEST(SceneFingerprint, IsThatOfTheContent)
   EXPECT_EQ(scene_fingerprint(small_scene()), fingerprint);
   scene::Scene scene = small_scene();
   scene.path = "elsewhere";
+  scene.edit(scene.nodes().first(), [](scene::Node &node) { node.extras = R"({"price":3})"; });
   EXPECT_EQ(scene_fingerprint(scene), fingerprint);
 
   const auto expect_other = [&](const auto &handle, const auto &change) {

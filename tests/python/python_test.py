@@ -187,7 +187,7 @@ class Scenes(unittest.TestCase):
                 (TypeError, "lamp cannot be .*: it is not a gnomon.Lamp or None$", lambda: node.edit(lamp=node)),
                 (TypeError, "meshes cannot be .*: it is not a list, of which each is a gnomon.Mesh$", lambda: node.edit(meshes=node)),
                 (TypeError, "is_visible cannot be 'yes': it is not True or False$", lambda: node.edit(is_visible="yes")),
-                (TypeError, "lamp 'sun' has no property 'power'; it has: name, kind", lambda: lamp.edit(angle=0.1, power=1)),
+                (TypeError, "lamp 'sun' has no property 'power'; it has: name, extras, kind", lambda: lamp.edit(angle=0.1, power=1)),
                 (gnomon.InvalidEdit, "camera 'eye': near -1 is not above 0", lambda: setattr(camera, "near", -1)),
                 (gnomon.InvalidEdit, "camera 'eye': vertical_angle 4 ", lambda: setattr(camera, "vertical_angle", 4)),
                 (gnomon.InvalidEdit, r"node 'square': its matrix has 1e\+300 in row 1 and column 3, which is not from -1e\+12 to 1e\+12$",
@@ -317,9 +317,20 @@ class Scenes(unittest.TestCase):
             scene.save(named)
             document = json.loads(Path(named).read_text())
             document["nodes"][0]["extras"] = {"price": 3}
+            document["accessors"][0]["extras"] = {"by": "hand"}
             Path(named).write_text(json.dumps(document))
-            with self.assertWarnsRegex(UserWarning, "saved without its extra 'price' of node 'square'$"):
-                gnomon.load(named).save(named)
+            marked = gnomon.load(named)
+            self.assertEqual(marked.nodes[0].extras, '{"price":3}')
+            marked.nodes[0].extras = '{"price": 4}'
+            marked.meshes[0].extras = '{"parts": [1, 2]}'
+            with self.assertWarnsRegex(UserWarning, "saved without its extra 'by' of accessor 0$"):
+                marked.save(named)
+            document = json.loads(Path(named).read_text())
+            self.assertEqual(document["nodes"][0]["extras"], {"price": 4})
+            self.assertEqual(document["meshes"][0]["extras"], {"parts": [1, 2]})
+            marked.nodes[0].extras = "[1, 2]"
+            with self.assertRaisesRegex(gnomon.FileError, "node 'square': its extras are not a JSON object"):
+                marked.save(named)
             with self.assertRaisesRegex(gnomon.FileError, "nowhere"):
                 scene.save(os.path.join(folder, "nowhere", "saved.glb"))
             for name in (b"/\xe9.glb", "/\udce9.glb"):

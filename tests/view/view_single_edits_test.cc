@@ -224,12 +224,15 @@ Content content_of(const Scene &scene)
       content[fmt::format("{}matrix[{}]", name, i)] = node.parent_from_node[i / 4][i % 4];
     }
     add_rows(content, node, name);
+    std::string extras = node.extras;
     if (const Lamp *lamp = scene.lamps().find(node.lamp)) {
       add_rows(content, *lamp, name);
       add_rows(content, ShadowOfLamp{lamp->kind, scene::ShadowKind::Evsm, lamp->shadow}, name);
+      extras += lamp->extras;
     }
     if (const scene::Camera *camera = scene.cameras().find(node.camera)) {
       add_rows(content, *camera, name);
+      extras += camera->extras;
     }
     for (std::size_t m = 0; m < node.meshes.size(); m++) {
       const Mesh *mesh = scene.meshes().find(node.meshes[m]);
@@ -237,6 +240,7 @@ Content content_of(const Scene &scene)
         continue;
       }
       add_rows(content, scene.material_of(*mesh), fmt::format("{}material {} ", name, m));
+      extras += mesh->extras + scene.material_of(*mesh).extras;
       for (std::size_t i = 0; i < mesh->positions.size(); i++) {
         const glm::dvec3 position(world * glm::dvec4(mesh->positions[i], 1.0));
         for (int axis = 0; axis < 3; axis++) {
@@ -244,6 +248,8 @@ Content content_of(const Scene &scene)
         }
       }
     }
+    // Those of an area lamp are read as those of its node.
+    content[name + "extras"] = double(std::ranges::count(extras, ':'));
   }
   if (scene.world()) {
     add_rows(content, *scene.world(), "world ");
@@ -447,6 +453,16 @@ TEST_F(ViewSingleEditsTest, EachIsUndoneRedoneSavedAndLoaded)
 {
   Scene full = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/full.gltf");
   full.set_world(scene::World{.color = {0.5F, 0.25F, 1.0F}});
+  const auto give_extras = [&](const auto &pool) {
+    for (const auto &item : pool) {
+      full.edit(item.handle, [](auto &thing) { thing.extras = fmt::format(R"({{"{}":1}})", thing.kind_name); });
+    }
+  };
+  give_extras(full.nodes());
+  give_extras(full.meshes());
+  give_extras(full.materials());
+  give_extras(full.lamps());
+  give_extras(full.cameras());
   const std::vector<std::string> edits = expect_edits(std::move(full));
   const std::vector<std::string> none;
   EXPECT_EQ(missing_rows<Placement>(edits, "placement."), none);

@@ -56,6 +56,17 @@ enum class Reach {
   Through
 };
 
+/** How much of a node must be in an area, so that Overlay::select finds it. */
+enum class Extent {
+  /** A pixel. */
+  Part,
+  /**
+   * All that the picture would show if nothing covered it. A node that reaches beyond the edge of the picture, or
+   * behind the eye, is not found.
+   */
+  Whole
+};
+
 /**
  * The corners of a rectangle in a picture, for Overlay::select. \a from_px and \a to_px: any two opposite corners, in
  * pixels from the lower left corner of the picture.
@@ -110,10 +121,13 @@ class Overlay {
    *
    * Draws the objects in the rectangle around the outline once for Reach::Visible, and reads that back. Reach::Through
    * repeats it without the objects that were found until there are no more, as often as objects lie behind each other.
+   * Extent::Whole also draws the nodes that were found, alone and into the whole picture, until none of those that are
+   * left has a pixel outside, and the CPU looks for their vertices beyond the edges.
    * \throws gpu::Error if a corner is not finite
    */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> select(const draw::View &view, glm::ivec2 size_px,
-                                                               std::span<const glm::dvec2> polygon_px, Reach reach);
+                                                               std::span<const glm::dvec2> polygon_px, Reach reach,
+                                                               Extent extent = Extent::Part);
   /**
    * The four planes through the sides of a rectangle of the picture, for SceneRenderer::set_clip_planes: they leave
    * what the rectangle shows, near and far. \a from_px and \a to_px: as of rectangle(). The rectangle is rounded to
@@ -171,6 +185,14 @@ class Overlay {
   bool record_objects(const draw::View &view, glm::ivec2 size_px, const IsDrawn &is_drawn, ObjectsTarget &target,
                       gpu::CommandList &list);
 
+  /**
+   * By object, whether it is drawn at one of the pixels of \a region whose \a mask, row by row, is not 0.
+   * \a reach: Through looks behind the objects that were found until there are no more
+   */
+  [[nodiscard]] std::vector<bool> objects_at(const draw::View &view, glm::ivec2 size_px, const gpu::Rectangle &region,
+                                             std::span<const std::uint8_t> mask, Reach reach, const IsDrawn &is_drawn);
+  /** Whether all vertices of an object are in the picture and before the eye. */
+  [[nodiscard]] bool is_in_picture(const draw::View &view, draw::ObjectIndex object) const;
   /** Draw all objects into hiding_, unless they are there. \return whether there is one */
   bool update_hiding(const draw::View &view, glm::ivec2 size_px);
   void upload(std::span<const Line> lines);

@@ -102,16 +102,9 @@ std::vector<glm::dvec4> Overlay::planes_around(const draw::View &view, glm::ivec
   return planes;
 }
 
-std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, glm::ivec2 size_px,
-                                                        std::span<const glm::dvec2> polygon_px, Reach reach)
+std::vector<bool> Overlay::objects_at(const draw::View &view, glm::ivec2 size_px, const gpu::Rectangle &region,
+                                      std::span<const std::uint8_t> mask, Reach reach, const IsDrawn &is_drawn)
 {
-  check_up_to_date();
-  check_finite(polygon_px);
-  const gpu::Rectangle region = pixels_around(polygon_px, size_px);
-  if (region.size_px.x == 0 || region.size_px.y == 0) {
-    return {};
-  }
-  const std::vector<std::uint8_t> inside = inside_of(polygon_px, region);
   const draw::View region_view = view_of_region(view, size_px, region);
   gpu::Device &device = scene_.device();
   // The target has the region's size, so that nothing else is read back.
@@ -121,7 +114,7 @@ std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, 
   for (bool is_first = true; has_more && (is_first || reach == Reach::Through); is_first = false) {
     has_more = false;
     gpu::CommandList list;
-    const auto is_left = [&](draw::ObjectIndex object) { return !is_found[object]; };
+    const auto is_left = [&](draw::ObjectIndex object) { return !is_found[object] && is_drawn(object); };
     if (!record_objects(region_view, region.size_px, is_left, area, list)) {
       break;
     }
@@ -129,11 +122,50 @@ std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, 
     const auto texels = gpu::read_as<glm::vec2>(device, area.objects);
     for (std::size_t i = 0; i < texels.size(); i++) {
       const auto object = draw::ObjectIndex(texels[i].x);
-      if (inside[i] != 0 && object != draw::object_identity && !is_found[object]) {
+      if (mask[i] != 0 && object != draw::object_identity && !is_found[object]) {
         is_found[object] = has_more = true;
       }
     }
   }
+  return is_found;
+}
+
+bool Overlay::is_in_picture(const draw::View &view, draw::ObjectIndex object) const
+{
+  const render_scene::RenderObject &drawn = scene_.object(object);
+  const scene::Mesh &mesh = scene_.scene().meshes()[drawn.mesh];
+  glm::dmat4 world_from_object = scene_.scene().world_from_node(drawn.node);
+  world_from_object[3] -= glm::dvec4(scene_.origin_ws(), 0.0);
+  const glm::dmat4 clip_from_object =
+      glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world()) * world_from_object;
+  const auto is_there = [&](const glm::vec3 &vertex) {
+    const glm::dvec4 place = clip_from_object * glm::dvec4(vertex, 1.0);
+    return place.w > 0.0 && std::abs(place.x) <= place.w && std::abs(place.y) <= place.w;
+  };
+  if (!mesh.host_shape) {
+    return std::ranges::all_of(mesh.positions, is_there);
+  }
+  // The vertices are in buffers of the host.
+  bool is_all_there = true;
+  for (int corner = 0; corner < 8; corner++) {
+    const glm::bvec3 is_max((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+    is_all_there &= is_there(glm::mix(mesh.bounds.min, mesh.bounds.max, is_max));
+  }
+  return is_all_there;
+}
+
+std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, glm::ivec2 size_px,
+                                                        std::span<const glm::dvec2> polygon_px, Reach reach,
+                                                        Extent extent)
+{
+  check_up_to_date();
+  check_finite(polygon_px);
+  const gpu::Rectangle region = pixels_around(polygon_px, size_px);
+  if (region.size_px.x == 0 || region.size_px.y == 0) {
+    return {};
+  }
+  const auto is_any = [](draw::ObjectIndex /*object*/) { return true; };
+  const std::vector<bool> is_found = objects_at(view, size_px, region, inside_of(polygon_px, region), reach, is_any);
   std::vector<scene::Handle<scene::Node>> nodes;
   std::unordered_set<scene::Handle<scene::Node>> known;
   for (draw::ObjectIndex object = draw::object_identity + 1; object < is_found.size(); object++) {
@@ -141,6 +173,22 @@ std::vector<scene::Handle<scene::Node>> Overlay::select(const draw::View &view, 
       nodes.push_back(scene_.object(object).node);
     }
   }
+  if (extent == Extent::Part || nodes.empty()) {
+    return nodes;
+  }
+  const gpu::Rectangle picture{glm::ivec2(0), size_px};
+  std::vector<std::uint8_t> outside = inside_of(polygon_px, picture);
+  std::ranges::transform(outside, outside.begin(), [](std::uint8_t inside) { return std::uint8_t(1 - inside); });
+  const auto is_candidate = [&](draw::ObjectIndex object) { return known.contains(scene_.object(object).node); };
+  // Nodes that are wholly inside cover no pixel outside, so that the others show there.
+  const std::vector<bool> reaches_out = objects_at(view, size_px, picture, outside, Reach::Through, is_candidate);
+  for (draw::ObjectIndex object = draw::object_identity + 1; object < reaches_out.size(); object++) {
+    if (scene_.objects().is_live(object) && is_candidate(object) &&
+        (reaches_out[object] || !is_in_picture(view, object))) {
+      known.erase(scene_.object(object).node);
+    }
+  }
+  std::erase_if(nodes, [&](scene::Handle<scene::Node> node) { return !known.contains(node); });
   return nodes;
 }
 

@@ -4,6 +4,7 @@
 #include "internal/gltf_document_buffers.hh"
 #include "internal/gltf_document_extras.hh"
 #include "internal/gltf_document_shading.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_json.hh"
 #include "internal/gltf_json_fault.hh"
 #include "memory_pages.hh"
@@ -55,7 +56,7 @@ class DocumentReader {
     }
     read_extensions();
     if (const JsonValue *extras = root(extras_key)) {
-      count_foreign_extras(document_, *extras);
+      note_foreign_extras(document_, *extras);
     }
     read_array("scenes", model_.scenes,
                [this](const auto &at, const auto &value, auto &one) { read_scene(at, value, one); });
@@ -397,32 +398,6 @@ std::string reason_of(simdjson::error_code error)
   return printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
 }
 
-/** Newer versions of simdjson (that of Debian 13) have a code of their own for whole numbers above 64 bits. */
-template <class Code>
-bool is_number_error(Code error)
-{
-  if constexpr (requires { Code::BIGINT_ERROR; }) {
-    if (error == Code::BIGINT_ERROR) {
-      return true;
-    }
-  }
-  return error == Code::NUMBER_ERROR;
-}
-
-/** Allocate the parser's output buffers for a text of this size. They need several times the size of the text. */
-simdjson::error_code allocate(simdjson::dom::parser &parser, std::size_t size)
-{
-  if (const simdjson::error_code error = parser.allocate(size); error != simdjson::SUCCESS) {
-    return error;
-  }
-  if (const simdjson::error_code error = parser.doc.allocate(size); error != simdjson::SUCCESS) {
-    return error;
-  }
-  memory::prefer_large_pages(parser.implementation->structural_indexes.get(), size * sizeof(std::uint32_t));
-  memory::prefer_large_pages(parser.doc.tape.get(), size * sizeof(std::uint64_t));
-  return simdjson::SUCCESS;
-}
-
 }  // namespace
 
 std::size_t document_padding()
@@ -449,20 +424,8 @@ Model parse_document(std::span<const unsigned char> json, Warnings &warnings)
   }
   simdjson::dom::parser parser;
   JsonValue document;
-  const auto parse = [&] { return parser.parse(text.data(), text.size(), false).get(document); };
-  simdjson::error_code error = allocate(parser, text.size());
-  error = error == simdjson::SUCCESS ? parse() : error;
   std::string changed;
-  if (is_number_error(error)) {
-    changed = with_long_numbers_as_floats(text, document_padding());
-    text = std::string_view(changed).substr(0, changed.size() - document_padding());
-    error = parse();
-  }
-  if (error == simdjson::DEPTH_ERROR) {
-    // Parts of the document that are not read may have any depth.
-    error = parser.allocate(text.size(), text.size());
-    error = error == simdjson::SUCCESS ? parse() : error;
-  }
+  const simdjson::error_code error = parse_json(parser, text, changed, document);
   if (error == simdjson::MEMALLOC) {
     throw std::bad_alloc();
   }
@@ -470,7 +433,11 @@ Model parse_document(std::span<const unsigned char> json, Warnings &warnings)
     const std::string found = json_fault(whole);
     throw Fault("JSON", "parse error: " + (found.empty() ? reason_of(error) : found));
   }
-  return DocumentReader(document, warnings).read();
+  Model model = DocumentReader(document, warnings).read();
+  if (warnings.has_kept_extras) {
+    read_foreign_extras(text, warnings, model);
+  }
+  return model;
 }
 
 }  // namespace gnomon::gltf

@@ -89,6 +89,9 @@ class MaterialParser {
   {
     std::set<std::string_view> read;
     for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &member) {
+      if (key == extras_key) {
+        note_foreign_extras(place, member);
+      }
       if (!read_member(at, member, path.empty() ? std::string(key) : path + '/' + std::string(key))) {
         if (key == extensions_key || place.key == extensions_key) {
           skip_member(place, at, member);
@@ -229,6 +232,9 @@ void read_lens(const Place &place, const JsonValue &value, const std::map<std::s
     else if (key == extensions_key) {
       skip_member(place, at, number);
     }
+    else if (key == extras_key) {
+      note_foreign_extras(place, number);
+    }
   });
   if (required_count < required.size()) {
     std::string names;
@@ -271,8 +277,10 @@ void read_image(const Place &place, const JsonValue &value, Model::Image &image)
 void read_camera(const Place &place, const JsonValue &value, Model::Camera &camera)
 {
   std::string type;
-  const auto later = [](const Place &, const JsonValue &) {};
-  read_members(place, value, into_name(camera.name), into("type", type), Member{"extensions", later});
+  // Which lens is read depends on it.
+  for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &member) {
+    type = key == "type" ? string_at(at, member) : type;
+  });
   if (type != "perspective" && type != "orthographic") {
     throw Fault("glTF", "Invalid camera type of " + place.text() + ": '" + printable(type) + "'");
   }
@@ -292,7 +300,8 @@ void read_camera(const Place &place, const JsonValue &value, Model::Camera &came
                 nullptr, nullptr);
     }
   };
-  read_members(place, value, Member{"perspective", read_if_used}, Member{"orthographic", read_if_used});
+  read_members(place, value, into_name(camera.name), into("type", type), Member{"perspective", read_if_used},
+               Member{"orthographic", read_if_used});
   if (!has_lens) {
     throw Fault("glTF", place.text() + ": has no " + type);
   }

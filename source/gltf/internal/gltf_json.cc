@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_json.hh"
 
+#include "internal/gltf_document.hh"
+#include "internal/gltf_model.hh"
+#include "memory_pages.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -45,7 +49,17 @@ void Place::warn(std::string_view reason) const
   warnings_of(*this).add_counted(label(), 1, reason);
 }
 
-void count_foreign_extras(const Place &place, const JsonValue &extras)
+/** Whether read_foreign_extras() reads the extras of the object at \a place. */
+static bool keeps_extras(const Place &place)
+{
+  if (place.outer == nullptr) {
+    return true;
+  }
+  return place.element != nullptr ? std::ranges::count(arrays_with_kept_extras, place.key) > 0
+                                  : place.key == lights_key && place.outer->key == punctual_key;
+}
+
+void note_foreign_extras(const Place &place, const JsonValue &extras)
 {
   Warnings &warnings = warnings_of(place);
   const auto count = [&](std::string_view key) {
@@ -60,9 +74,14 @@ void count_foreign_extras(const Place &place, const JsonValue &extras)
     return;
   }
   for (const auto [key, value] : object) {
-    if (!key.starts_with(own_extra_prefix)) {
-      count(key);
+    if (key.starts_with(own_extra_prefix)) {
+      continue;
     }
+    if (keeps_extras(place)) {
+      warnings.has_kept_extras = true;
+      return;
+    }
+    count(key);
   }
 }
 
@@ -110,6 +129,51 @@ std::string with_long_numbers_as_floats(std::string_view json, std::size_t paddi
   }
   result.resize(result.size() + padding);
   return result;
+}
+
+/** Newer versions of simdjson (that of Debian 13) have a code of their own for whole numbers above 64 bits. */
+template <class Code>
+static bool is_number_error(Code error)
+{
+  if constexpr (requires { Code::BIGINT_ERROR; }) {
+    if (error == Code::BIGINT_ERROR) {
+      return true;
+    }
+  }
+  return error == Code::NUMBER_ERROR;
+}
+
+/** Allocate the parser's output buffers for a text of this size. They need several times the size of the text. */
+static simdjson::error_code allocate(simdjson::dom::parser &parser, std::size_t size)
+{
+  if (const simdjson::error_code error = parser.allocate(size); error != simdjson::SUCCESS) {
+    return error;
+  }
+  if (const simdjson::error_code error = parser.doc.allocate(size); error != simdjson::SUCCESS) {
+    return error;
+  }
+  memory::prefer_large_pages(parser.implementation->structural_indexes.get(), size * sizeof(std::uint32_t));
+  memory::prefer_large_pages(parser.doc.tape.get(), size * sizeof(std::uint64_t));
+  return simdjson::SUCCESS;
+}
+
+simdjson::error_code parse_json(simdjson::dom::parser &parser, std::string_view json, std::string &changed,
+                                JsonValue &value)
+{
+  const auto parse = [&] { return parser.parse(json.data(), json.size(), false).get(value); };
+  simdjson::error_code error = allocate(parser, json.size());
+  error = error == simdjson::SUCCESS ? parse() : error;
+  if (is_number_error(error)) {
+    changed = with_long_numbers_as_floats(json, document_padding());
+    json = std::string_view(changed).substr(0, changed.size() - document_padding());
+    error = parse();
+  }
+  if (error == simdjson::DEPTH_ERROR) {
+    // Parts of the document that are not read may have any depth.
+    error = parser.allocate(json.size(), json.size());
+    error = error == simdjson::SUCCESS ? parse() : error;
+  }
+  return error;
 }
 
 std::string quoted(const JsonValue &value)

@@ -48,6 +48,13 @@ struct Place {
  */
 [[nodiscard]] std::string with_long_numbers_as_floats(std::string_view json, std::size_t padding);
 
+/**
+ * Parses \a json, which document_padding() bytes follow. Whole numbers above 64 bits are read as floats. \a changed:
+ * the text that is then parsed. \a value: as long as \a parser
+ */
+[[nodiscard]] simdjson::error_code parse_json(simdjson::dom::parser &parser, std::string_view json,
+                                              std::string &changed, JsonValue &value);
+
 /** The text of a value, shortened. */
 [[nodiscard]] std::string quoted(const JsonValue &value);
 
@@ -131,8 +138,8 @@ inline constexpr std::string_view own_extra_prefix = "gnomon_";
 /** The key of what programs may add to all objects of glTF. */
 inline constexpr std::string_view extras_key = "extras";
 
-/** Counts what programs other than Gnomon have added to the object at \a place. */
-void count_foreign_extras(const Place &place, const JsonValue &extras);
+/** Notes that programs other than Gnomon have added members to the object at \a place: to keep, or lost. */
+void note_foreign_extras(const Place &place, const JsonValue &extras);
 
 /** A member that read_members did not look for. Names the extensions that it has. */
 void skip_member(const Place &place, const Place &at, const JsonValue &member);
@@ -151,7 +158,7 @@ void read_members(const Place &place, const JsonValue &value, const Member<Read>
     const Place at{&place, key};
     std::uint64_t bit = 1;
     if (key == extras_key) {
-      count_foreign_extras(place, member);
+      note_foreign_extras(place, member);
     }
     const bool is_read = ((members.key == key ? (members.read(at, member), true) : (bit <<= 1U, false)) || ...);
     if (!is_read) {

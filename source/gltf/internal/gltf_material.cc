@@ -339,8 +339,14 @@ class MaterialReader {
 
 }  // namespace
 
-MaterialImporter::MaterialImporter(const File &file, const ImportOptions &options, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), scene_(scene), textures_(file, options, warnings, scene), stand_ins_(scene)
+MaterialImporter::MaterialImporter(const File &file, const ImportOptions &options, ForeignExtras &extras,
+                                   Warnings &warnings, Scene &scene)
+    : file_(file),
+      extras_(extras),
+      warnings_(warnings),
+      scene_(scene),
+      textures_(file, options, warnings, scene),
+      stand_ins_(scene)
 {
   for (const Model::Animation &animation : file.model.animations) {
     for (const Model::AnimationChannel &channel : animation.channels) {
@@ -364,6 +370,7 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
     MaterialReader reader(source, static_cast<std::size_t>(gltf_material), moved_[gltf_material], textures_, stand_ins_,
                           warnings_);
     Material material = reader.read();
+    material.extras = extras_.of("materials", gltf_material);
     if (!source.surface_uri.empty()) {
       material.surface_function =
           surface_function(source.surface_uri, label("material", source.name, static_cast<std::size_t>(gltf_material)));

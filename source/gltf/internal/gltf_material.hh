@@ -2,6 +2,7 @@
 #pragma once
 
 #include "internal/gltf_file.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_slots.hh"
@@ -21,7 +22,8 @@ namespace gnomon::gltf {
 class MaterialImporter {
  public:
   /** All references must outlive the importer. */
-  MaterialImporter(const File &file, const ImportOptions &options, Warnings &warnings, scene::Scene &scene);
+  MaterialImporter(const File &file, const ImportOptions &options, ForeignExtras &extras, Warnings &warnings,
+                   scene::Scene &scene);
 
   /** The scene's material for a material of the file; -1 is glTF's default material. */
   [[nodiscard]] scene::Handle<scene::Material> handle_of(int gltf_material);
@@ -65,6 +67,7 @@ class MaterialImporter {
   scene::Handle<scene::SurfaceFunction> surface_function(const std::string &uri, const std::string &what);
 
   const File &file_;
+  ForeignExtras &extras_;
   Warnings &warnings_;
   scene::Scene &scene_;
   TextureImporter textures_;

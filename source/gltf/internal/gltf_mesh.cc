@@ -32,14 +32,15 @@ std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t 
 
 }  // namespace
 
-MeshImporter::MeshImporter(const File &file, const ImportOptions &options, Progress &progress, Warnings &warnings,
-                           Scene &scene)
+MeshImporter::MeshImporter(const File &file, const ImportOptions &options, Progress &progress, ForeignExtras &extras,
+                           Warnings &warnings, Scene &scene)
     : file_(file),
       progress_(progress),
+      extras_(extras),
       warnings_(warnings),
       scene_(scene),
       element_count_max_(options.element_count_max),
-      materials_(file, options, warnings, scene)
+      materials_(file, options, extras, warnings, scene)
 {
 }
 
@@ -80,8 +81,9 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
   const Model::Primitive &primitive = source.primitives[primitive_index];
   const std::string name = primitive_name(source, gltf_mesh, primitive_index);
   primitive_count_++;
-  const auto [place, is_new] = mesh_of_.try_emplace(
-      {name, primitive.attributes, primitive.indices, primitive.material, primitive.mode}, Handle<Mesh>());
+  const auto [place, is_new] = mesh_of_.try_emplace({name, primitive.attributes, primitive.indices, primitive.material,
+                                                     primitive.mode, extras_.has("meshes", gltf_mesh) ? gltf_mesh : -1},
+                                                    Handle<Mesh>());
   if (!is_new) {
     if (place->second) {
       meshes.push_back(place->second);
@@ -172,6 +174,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
     return {};
   }
   mesh.name = primitive_name(source, gltf_mesh, primitive_index);
+  mesh.extras = extras_.of("meshes", gltf_mesh);
   if (deformed) {
     // Its vertices stay those of the rest shape, so facets are left as the file has them.
     deformed->mesh = scene_.add(std::move(mesh));

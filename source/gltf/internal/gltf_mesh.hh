@@ -2,6 +2,7 @@
 #pragma once
 
 #include "internal/gltf_file.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_material.hh"
 #include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
@@ -23,8 +24,8 @@ class PrimitiveReader;
 class MeshImporter {
  public:
   /** All references must outlive the importer. */
-  MeshImporter(const File &file, const ImportOptions &options, Progress &progress, Warnings &warnings,
-               scene::Scene &scene);
+  MeshImporter(const File &file, const ImportOptions &options, Progress &progress, ForeignExtras &extras,
+               Warnings &warnings, scene::Scene &scene);
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
   [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
@@ -61,13 +62,17 @@ class MeshImporter {
  private:
   const File &file_;
   Progress &progress_;
+  ForeignExtras &extras_;
   Warnings &warnings_;
   scene::Scene &scene_;
   std::uint64_t element_count_max_;
   MaterialImporter materials_;
   std::map<int, std::vector<scene::Handle<scene::Mesh>>> meshes_of_;
-  /** Primitives with the same key become one mesh: name, attributes, indices, material and mode. */
-  using PrimitiveKey = std::tuple<std::string, std::map<std::string, int, std::less<>>, int, int, int>;
+  /**
+   * Primitives with the same key become one mesh: name, attributes, indices, material, mode, and the mesh of the file
+   * if that has extras, otherwise -1.
+   */
+  using PrimitiveKey = std::tuple<std::string, std::map<std::string, int, std::less<>>, int, int, int, int>;
   /** Invalid handles for primitives that were left out. */
   std::map<PrimitiveKey, scene::Handle<scene::Mesh>> mesh_of_;
   std::size_t primitive_count_ = 0;

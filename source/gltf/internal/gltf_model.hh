@@ -8,11 +8,21 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
+
+/** The arrays of the document whose elements keep the extras of other programs. */
+inline constexpr std::array<std::string_view, 5> arrays_with_kept_extras{"scenes", "nodes", "meshes", "materials",
+                                                                         "cameras"};
+inline constexpr std::string_view punctual_key = "KHR_lights_punctual";
+/** The array of that extension, whose elements keep them, too. */
+inline constexpr std::string_view lights_key = "lights";
+/** Stands for an array where the extras are those of the document. */
+inline constexpr std::string_view document_extras{};
 
 /**
  * The properties of a glTF document that the importer reads, with glTF's defaults. Indices are -1 if absent.
@@ -267,6 +277,12 @@ struct Model {
   std::vector<ImageLight> image_lights;
   std::vector<Skin> skins;
   std::vector<Animation> animations;
+
+  /**
+   * JSON objects of what other programs have added, by the array of the document and the index in it.
+   * \see arrays_with_kept_extras; document_extras has the index 0
+   */
+  std::map<std::pair<std::string_view, int>, std::string> foreign_extras;
 
   /** That of `scene`, or the first; nullptr: the file has none. */
   [[nodiscard]] const Scene *default_scene() const

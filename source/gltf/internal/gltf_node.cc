@@ -34,16 +34,19 @@ bool is_node_extra(std::string_view key)
 
 void read_flags(const Model::Node &source, int index, scene::Node &node)
 {
-  for_each_flag([&](const auto &row) {
-    const std::string key = extra_key(row);
-    if (const auto found = source.extras.find(key); found != source.extras.end()) {
-      const bool *value = std::get_if<bool>(&found->second);
-      if (value == nullptr) {
-        fail_extra(source, index, key, "true or false");
+  // Most nodes have no extras.
+  if (!source.extras.empty()) {
+    for_each_flag([&](const auto &row) {
+      const std::string key = extra_key(row);
+      if (const auto found = source.extras.find(key); found != source.extras.end()) {
+        const bool *value = std::get_if<bool>(&found->second);
+        if (value == nullptr) {
+          fail_extra(source, index, key, "true or false");
+        }
+        node.*row.member = *value;
       }
-      node.*row.member = *value;
-    }
-  });
+    });
+  }
   node.is_visible = node.is_visible && source.is_visible;
 }
 

@@ -69,6 +69,8 @@ class Warnings {
   }
   /** "extra 'key' of node 'a' and 2 others"; empty: none. */
   [[nodiscard]] std::string foreign_extras() const;
+  /** Whether the document has extras of other programs that are kept. */
+  bool has_kept_extras = false;
 
  private:
   struct Entry {

@@ -97,4 +97,11 @@ void JsonText::add(std::string_view key, std::string_view value)
   count_++;
 }
 
+void JsonText::add_all(const JsonText &other)
+{
+  text_ += text_.empty() || other.empty() ? "" : ",";
+  text_ += other.text_;
+  count_ += other.count_;
+}
+
 }  // namespace gnomon::gltf

@@ -39,6 +39,8 @@ class JsonText {
   int add(std::string_view value);
   /** Appends a member. \a key: needs no escaping. */
   void add(std::string_view key, std::string_view value);
+  /** Appends what \a other has. */
+  void add_all(const JsonText &other);
   [[nodiscard]] std::string array() const
   {
     return '[' + text_ + ']';

@@ -2,6 +2,7 @@
 #include "internal/gltf_write_lamp.hh"
 
 #include "internal/gltf_extra.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
 
@@ -80,6 +81,7 @@ std::string camera_json(const Camera &camera)
   json.add("name", json_string(camera.name, what));
   json.add("type", quoted_word(type));
   json.add(type, lens.object());
+  add_extras({}, {camera.extras}, what, json);
   return json.object();
 }
 
@@ -102,6 +104,7 @@ std::string light_json(const Lamp &lamp)
     spot.add("outerConeAngle", json_number(lamp.spot_outer_angle, what));
     json.add("spot", spot.object());
   }
+  add_extras({}, {lamp.extras}, what, json);
   return json.object();
 }
 

@@ -2,6 +2,7 @@
 #include "internal/gltf_write_mesh.hh"
 
 #include "image_base64.hh"
+#include "internal/gltf_foreign_extras.hh"
 #include "internal/gltf_model.hh"
 #include "internal/gltf_pointer.hh"
 #include "internal/gltf_report.hh"
@@ -128,6 +129,7 @@ int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes, bool is_d
     name.resize(name.size() - first.size());
   }
   JsonText primitives;
+  std::vector<std::string_view> extras;
   for (std::size_t i = 0; i < drawn.size(); i++) {
     const Mesh &mesh = scene_.meshes()[drawn[i]];
     JsonText json = primitive(drawn[i], is_deformed);
@@ -135,10 +137,14 @@ int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes, bool is_d
       json.add("extras", "{\"gnomon_name\":" + json_string(mesh.name, what_of("mesh", mesh.name)) + '}');
     }
     primitives.add(json.object());
+    if (std::ranges::find(extras, mesh.extras) == extras.end()) {
+      extras.push_back(mesh.extras);
+    }
   }
   JsonText json;
   json.add("name", json_string(name, what_of("mesh", name)));
   json.add("primitives", primitives.array());
+  add_extras({}, extras, what_of("mesh", name), json);
   place->second = meshes.add(json.object());
   return place->second;
 }
@@ -336,9 +342,11 @@ int MeshWriter::material(Handle<Material> handle)
   if (!used.empty()) {
     json.add("extensions", used.object());
   }
+  JsonText extras;
   if (const scene::SurfaceFunction *function = scene_.surface_functions().find(material.surface_function)) {
-    json.add("extras", "{\"gnomon_surface\":\"" + surface_uri(*function) + "\"}");
+    extras.add("gnomon_surface", '"' + surface_uri(*function) + '"');
   }
+  add_extras(std::move(extras), {material.extras}, what, json);
   return material_of_.emplace(handle, materials.add(json.object())).first->second;
 }
 

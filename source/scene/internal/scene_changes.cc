@@ -60,8 +60,8 @@ Changes changes(const Mesh &a, const Mesh &b)
     same_layout = same_layout && (a.*stream).size() == (b.*stream).size();
     same_values = same_values && same_elements(a.*stream, b.*stream);
   });
-  return bit_if(a.name != b.name, Name) | bit_if(!same_layout || !same_values, Shape) | bit_if(!same_layout, Layout) |
-         bit_if(a.material != b.material, Material);
+  return bit_if(a.name != b.name || a.extras != b.extras, Name) | bit_if(!same_layout || !same_values, Shape) |
+         bit_if(!same_layout, Layout) | bit_if(a.material != b.material, Material);
 }
 
 Changes changes(const Image &a, const Image &b)

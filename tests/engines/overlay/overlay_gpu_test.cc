@@ -487,6 +487,97 @@ TEST_F(OverlayGpuTest, AnAreaSelectsWhatRaysThroughItsPixelsMeetFirstOrAtAll)
   EXPECT_GT(hidden_count, 20U);
 }
 
+TEST_F(OverlayGpuTest, AnAreaSelectsTheNodesThatAreWhollyInsideWhateverCoversThem)
+{
+  camera = test::camera_at({2, 3, 5}, {0, 0, 0});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> range(-1.0, 1.0);
+  const auto box = test::add_box_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  for (int i = 0; i < 60; i++) {
+    glm::dmat4 place = glm::translate(glm::dmat4(1), 2.5 * glm::dvec3(range(random), range(random), range(random)));
+    place = glm::rotate(place, 3.0 * range(random), glm::normalize(glm::dvec3(range(random), range(random), 0.1)));
+    test::add_object(scene, box, glm::scale(place, glm::dvec3(0.3)));
+  }
+  render_scene->update();
+  // By how many pixels all corners of a box are inside of the area, or the farthest one is outside.
+  const auto depth_inside = [&](scene::Handle<scene::Node> node, const glm::dvec2 &low, const glm::dvec2 &high) {
+    double depth = 1e9;
+    for (const glm::vec3 &corner : scene.meshes()[box].positions) {
+      const glm::dvec2 at =
+          seen(glm::dvec3(scene.world_from_node(node) * glm::dvec4(corner, 1.0))) - glm::dvec2(10, 15);
+      depth = std::min({depth, at.x - low.x, at.y - low.y, high.x - at.x, high.y - at.y});
+    }
+    return depth;
+  };
+  int whole_count = 0;
+  int part_count = 0;
+  const glm::dvec2 size(size_px);
+  for (int i = 0; i < 12; i++) {
+    const glm::dvec2 from = size * (0.5 + 0.6 * glm::dvec2(range(random), range(random)));
+    const glm::dvec2 to = size * (0.5 + 0.6 * glm::dvec2(range(random), range(random)));
+    for (const Reach reach : {Reach::Visible, Reach::Through}) {
+      const auto found = overlay->select(view(), size_px, rectangle(from, to), reach);
+      const auto whole = overlay->select(view(), size_px, rectangle(from, to), reach, Extent::Whole);
+      for (const auto node : whole) {
+        EXPECT_EQ(std::ranges::count(found, node), 1);
+        EXPECT_EQ(std::ranges::count(whole, node), 1);
+      }
+      for (const auto node : found) {
+        const glm::dvec2 low = glm::max(glm::min(from, to), glm::dvec2(0.0));
+        const double depth = depth_inside(node, low, glm::min(glm::max(from, to), size));
+        const bool is_whole = std::ranges::count(whole, node) == 1;
+        // A pixel of rounding, and corners that are less than two pixels thin where they meet a pixel's middle.
+        EXPECT_TRUE(depth < 1.0 || is_whole) << i << ": " << node.index << " is " << depth << " pixels inside";
+        EXPECT_TRUE(depth > -4.0 || !is_whole) << i << ": " << node.index << " is " << -depth << " pixels outside";
+        whole_count += is_whole ? 1 : 0;
+        part_count += depth <= -4.0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(whole_count, 20);
+  EXPECT_GT(part_count, 20);
+}
+
+TEST_F(OverlayGpuTest, ANodeIsNotWhollyInsideOfALassoThatLeavesItsMiddleOutOrBeyondThePicture)
+{
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  const auto back = add_square(0, material);
+  // A second mesh beside the first, which covers nothing of it.
+  const auto front = add_square(1, material, 0.3);
+  render_scene->update();
+  using Nodes = std::vector<scene::Handle<scene::Node>>;
+  const glm::dvec2 size(size_px);
+  const auto whole = [&](std::span<const glm::dvec2> outline, Reach reach = Reach::Visible) {
+    return overlay->select(view(), size_px, outline, reach, Extent::Whole);
+  };
+  const auto all = rectangle({0, 0}, size);
+  EXPECT_EQ(whole(all), (Nodes{back, front}));
+  // Around all corners of both, without the middle of the picture.
+  const std::vector<glm::dvec2> notched = {{0, 0}, {29, 0}, {29, 30}, {31, 30}, {31, 0}, {60, 0}, {60, 40}, {0, 40}};
+  EXPECT_EQ(overlay->select(view(), size_px, notched, Reach::Through), (Nodes{back, front}));
+  EXPECT_EQ(whole(notched, Reach::Through), Nodes());
+  // The front covers the part of the back that is in the area, and the back's rest is outside.
+  const glm::dvec2 corner = seen({0.6, 0.6, 0}) - glm::dvec2(10, 15);
+  const auto middle = rectangle(size - corner, corner);
+  EXPECT_EQ(whole(middle, Reach::Through), Nodes{front});
+  const auto world = scene.world_from_node(front);
+  const double pixels_per_metre = seen({1, 0, 1}).x - seen({0, 0, 1}).x;
+  scene.edit(front, [&](scene::Node &node) { node.parent_from_node[3].x = 0.5 * size.x / pixels_per_metre; });
+  render_scene->update();
+  EXPECT_EQ(overlay->select(view(), size_px, rectangle({-1e3, -1e3}, {1e3, 1e3}), Reach::Visible),
+            (Nodes{back, front}));
+  EXPECT_EQ(whole(rectangle({-1e3, -1e3}, {1e3, 1e3})), Nodes{back}) << "the front reaches beyond the picture";
+  // A node with two meshes is inside if both are.
+  scene.edit(front, [&](scene::Node &node) {
+    node.parent_from_node = world;
+    node.meshes.push_back(scene.nodes()[back].meshes.front());
+    node.parent_from_node[0] *= 2.0;
+  });
+  render_scene->update();
+  EXPECT_EQ(whole(all), (Nodes{back, front}));
+  EXPECT_EQ(whole(middle, Reach::Through), Nodes());
+}
+
 TEST_F(OverlayGpuTest, AnAreaWithinAHoleOfAMaskOrWithoutAPixelSelectsNothingOfIt)
 {
   const auto masked = add_mask();

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_foreign_extras.hh"
+
+#include "internal/gltf_document.hh"
+#include "internal/gltf_json.hh"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+namespace gnomon::gltf {
+
+namespace {
+
+namespace ondemand = simdjson::ondemand;
+
+using Keys = std::set<std::string, std::less<>>;
+
+/** The text without white space between its tokens. */
+std::string minified(std::string_view json)
+{
+  std::string result(json.size(), '\0');
+  std::size_t size = 0;
+  if (const auto error = simdjson::minify(json.data(), json.size(), result.data(), size)) {
+    throw simdjson::simdjson_error(error);
+  }
+  result.resize(size);
+  return result;
+}
+
+/** The members of \a object as they are written, but those of Gnomon and of \a taken, to which the keys are added. */
+JsonText members_of(ondemand::object object, Keys &taken)
+{
+  JsonText members;
+  Keys keys;
+  for (ondemand::field field : object) {
+    const char *const start = field.key().raw() - 1;
+    const std::string key(std::string_view(field.unescaped_key()));
+    ondemand::value value = field.value();
+    const std::string_view text = simdjson::to_json_string(value);
+    if (!key.starts_with(own_extra_prefix) && !taken.contains(key)) {
+      members.add(minified({start, text.data() + text.size()}));
+      keys.insert(key);
+    }
+  }
+  taken.merge(keys);
+  return members;
+}
+
+class Reader {
+ public:
+  Reader(Warnings &warnings, Model &model) : warnings_(warnings), model_(model) {}
+
+  void read(std::string_view json)
+  {
+    ondemand::parser parser;
+    ondemand::document document = parser.iterate(json.data(), json.size(), json.size() + document_padding());
+    for (ondemand::field member : document.get_object()) {
+      const std::string_view key = member.unescaped_key();
+      const auto *const array = std::ranges::find(arrays_with_kept_extras, key);
+      if (key == extras_key) {
+        keep(document_extras, 0, member.value());
+      }
+      else if (key == extensions_key) {
+        read_lights(member.value().get_object());
+      }
+      else if (array != arrays_with_kept_extras.end()) {
+        read_array(*array, member.value().get_array());
+      }
+    }
+  }
+
+ private:
+  Warnings &warnings_;
+  Model &model_;
+  std::size_t size_ = 0;
+
+  void read_lights(ondemand::object extensions)
+  {
+    for (ondemand::field extension : extensions) {
+      if (std::string_view(extension.unescaped_key()) != punctual_key) {
+        continue;
+      }
+      for (ondemand::field member : extension.value().get_object()) {
+        if (std::string_view(member.unescaped_key()) == lights_key) {
+          read_array(lights_key, member.value().get_array());
+        }
+      }
+    }
+  }
+
+  void read_array(std::string_view name, ondemand::array elements)
+  {
+    // The last of several arrays of the same name counts.
+    std::erase_if(model_.foreign_extras, [&](const auto &one) { return one.first.first == name; });
+    int index = 0;
+    for (ondemand::value element : elements) {
+      for (ondemand::field member : element.get_object()) {
+        if (std::string_view(member.unescaped_key()) == extras_key) {
+          keep(name, index, member.value());
+        }
+      }
+      index++;
+    }
+  }
+
+  void keep(std::string_view array, int index, ondemand::value extras)
+  {
+    model_.foreign_extras.erase({array, index});
+    if (extras.type() != ondemand::json_type::object) {
+      // Counted as lost.
+      return;
+    }
+    Keys keys;
+    const JsonText members = members_of(extras.get_object(), keys);
+    if (members.empty()) {
+      return;
+    }
+    std::string text = members.object();
+    const bool is_of_other_scene = array == "scenes" && index != std::max(model_.scene, 0);
+    if (is_of_other_scene || text.size() > foreign_extras_bytes_max - size_) {
+      warnings_.add_foreign_extra([&] {
+        const std::string_view kind = array.substr(0, array.size() - (array == "meshes" ? 2 : 1));
+        return "'" + printable(*keys.begin()) + "' of " +
+               (array == document_extras ? "the document" : label(kind, "", std::size_t(index)));
+      });
+      return;
+    }
+    size_ += text.size();
+    model_.foreign_extras.insert_or_assign({array, index}, std::move(text));
+  }
+};
+
+}  // namespace
+
+void read_foreign_extras(std::string_view json, Warnings &warnings, Model &model)
+{
+  try {
+    Reader(warnings, model).read(json);
+  }
+  catch (const simdjson::simdjson_error &error) {
+    throw Fault("extras", error.what());
+  }
+}
+
+std::string ForeignExtras::of(std::string_view array, int index)
+{
+  const auto found = model_.foreign_extras.find({array, index});
+  if (found == model_.foreign_extras.end()) {
+    return "";
+  }
+  if (found->second.size() > foreign_extras_bytes_max - size_) {
+    warnings_.add_counted("extras", 1, "left out: those of all things have more than 64 MiB");
+    return "";
+  }
+  size_ += found->second.size();
+  return found->second;
+}
+
+/** The members of a text of a host, which may be no JSON. */
+static JsonText members_of_text(std::string_view json, const std::string &what, Keys &taken)
+{
+  const simdjson::padded_string text(json);
+  simdjson::dom::parser parser;
+  std::string changed;
+  JsonValue value;
+  if (parse_json(parser, text, changed, value) != simdjson::SUCCESS || !value.is_object()) {
+    throw Fault(what, "its extras are not a JSON object");
+  }
+  ondemand::parser again;
+  ondemand::document document = again.iterate(text);
+  return members_of(document.get_object(), taken);
+}
+
+void add_extras(JsonText own, const std::vector<std::string_view> &foreign, const std::string &what, JsonText &json)
+{
+  Keys taken;
+  for (const std::string_view text : foreign) {
+    if (!text.empty()) {
+      own.add_all(members_of_text(text, what, taken));
+    }
+  }
+  if (!own.empty()) {
+    json.add(extras_key, own.object());
+  }
+}
+
+}  // namespace gnomon::gltf
