@@ -20,6 +20,8 @@ struct ReceiverPlane {
   vec2 slope;
   /** Casters with smaller depths do not shadow the receiver, even if they are in front of the plane. */
   float least_depth;
+  /** A texel that is behind the plane by at most this depth may show the receiver's own surface. */
+  float surface_depth;
 };
 
 /** Depths of the four texels at \a corner, in the order of textureGather. */
@@ -69,6 +71,9 @@ float caster_slope(float outer, float height, float inner)
  * such as the outer part of a wall which passes through a floor, or nothing. It is not beside the receiver. The caster is therefore
  * continued from its texel towards the others, along its own slope. Where it ends at the receiver's plane before a texel, a receiver on
  * its side of the end is in shadow, and a receiver beyond the end is lit. Edges of casters in front of the plane are blended.
+ *
+ * Where casters are beside the receiver and no lit texel shows its surface, the lit ones are beyond the end of the surface, such as those
+ * outside of a closed room. The receiver is in shadow.
  */
 float receiver_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
 {
@@ -79,6 +84,8 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
   vec4 lit = texels_lit(stored, receiver);
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
+  vec4 on_surface = lit * step(receiver - plane.surface_depth, stored);
+  bool is_hidden = dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
   // The direction towards the casters, and the four texels one further there.
   vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
   vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;
@@ -117,7 +124,8 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
     blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
   }
-  return is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
+  blend = is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
+  return is_hidden ? 0.0 : blend;
 }
 
 float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane,
@@ -182,6 +190,18 @@ float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
   return offset == vec3(0.0) ? 0.0 : place.receiver_depth - kernel_reach(filter_kind) * slope;
 }
 
+/** ReceiverPlane::surface_depth. \a texel_depth: change of depth along the edge of a texel towards the light. */
+float surface_depth(float texel_depth, vec2 slope)
+{
+  return shadow.surface_texels * abs(texel_depth) + 2.0 * (abs(slope.x) + abs(slope.y));
+}
+
+/**
+ * The nearest caster is at 2 to 2.38 times the distance of the near plane, which is rounded down to a quarter of a power of 2. This factor
+ * of the quotient of the receiver's distance and the plane's gives 1.68 to 2 times the largest gap. \see shadow_search
+ */
+const float SEARCH_PER_NEAR = 0.84;
+
 #ifdef USE_SHADOW_CUBE
 /** SHADOW_FILTER_… */
 int filter_of(ShadowCubeData cube)
@@ -219,6 +239,7 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre * per_z;
   place.plane.slope = n.xy * (per_metre / (uv_scale * size)) * extent;
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
+  place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope);
   place.layer = cube.layer + face;
   // Beyond the part of the face that its layer holds, there is no surface of the picture.
   bool is_in_crop = all(lessThanEqual(abs(uv - 0.5), vec2(0.5)));
@@ -255,7 +276,7 @@ vec2 shadow_cube_search(int index, Surface surface, LightData light)
 {
   ShadowCubeData cube = shadow.cubes[index];
   vec3 from_light = surface.position_ws - light.position_ws;
-  return vec2(cube.texel_size * largest(from_light), length(from_light) / cube.near);
+  return vec2(cube.texel_size * largest(from_light), SEARCH_PER_NEAR * length(from_light) / cube.near);
 }
 #endif
 
@@ -287,6 +308,8 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
   place.plane.depth = texco.z + dot(slope, moved);
   place.plane.slope = slope / size;
   place.plane.least_depth = least_depth(place, offset, map.filter_kind);
+  vec4 towards = map.texco_from_world * vec4(to_light, 0.0);
+  place.plane.surface_depth = surface_depth(map.texel_size * (towards.z - texco.z * towards.w), place.plane.slope);
   place.layer = map.layer;
   return place;
 }
@@ -343,7 +366,7 @@ vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_ligh
   vec4 receiver = map.texco_from_world * vec4(surface.position_ws, 1.0);
   return light.kind == LIGHT_SUN ?
              vec2(map.texel_size, 1.5 * max((1.0 - receiver.z) / depth_per_metre(map, to_light), 0.0)) :
-             max(vec2(map.texel_size * receiver.w, receiver.w / receiver.z), vec2(0.0));
+             max(vec2(map.texel_size * receiver.w, SEARCH_PER_NEAR * receiver.w / receiver.z), vec2(0.0));
 }
 
 /** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */

@@ -55,5 +55,29 @@ TEST_F(ShadowEditsGpuTest, LayersKeepTheirTexelsWhereTheirArrayGrowsAndShrinks)
   }
 }
 
+TEST_F(ShadowEditsGpuTest, NearPlaneDependsOnTheCastersAlone)
+{
+  for (const int sample_count : {1, 4}) {
+    scene::Scene scene;
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(10)));
+    const auto box = test::add_object(scene, test::add_box_mesh(scene, material), glm::dmat4(1.0));
+    scene.edit(test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 40.0F),
+               [](scene::Lamp &lamp) { lamp.radius = 0.5F; });
+    Settings settings = offline_settings(sample_count);
+    settings.shadow.cube_size_px = 128;
+    const scene::PlacedCamera camera = test::camera_at({0, -12, 9}, {0, 0, 0}, 0.9F);
+    test::Renderer renderer(*device, scene, {64, 48}, settings);
+    for (const double height : {0.0, 1.0, 1.5, 2.2, 1.0, -0.5}) {
+      scene.set_transform(box, glm::translate(glm::dmat4(1.0), glm::dvec3(0.5, 0, height)));
+      renderer.sync();
+      const test::Picture edited = renderer.picture(camera);
+      test::Renderer fresh(*device, scene, {64, 48}, settings);
+      EXPECT_EQ(edited.pixels, fresh.picture(camera).pixels)
+          << height << ", " << sample_count << " samples, bit for bit";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::eevee

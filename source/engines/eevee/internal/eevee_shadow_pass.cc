@@ -238,7 +238,10 @@ void ShadowPass::add_casters(render_scene::RenderScene &scene, std::span<const d
     shadows_.add_caster(
         {scene.object(index).bounds, index, kind.instances, fingerprint, mesh, &world_from_object, kind.is_blended});
   }
-  shadows_.finish();
+  shadows_.finish(std::ranges::all_of(objects, [&](draw::ObjectIndex index) {
+    const render_scene::RenderObject &object = scene.object(index);
+    return object.casts_shadow || !object.receives_shadow;
+  }));
   has_casters_ = true;
 }
 

@@ -119,8 +119,12 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
     std::vector<ShadowSlot> before = std::exchange(slots, {});
     for (const ShadowPlace &place : state_->plan.places) {
       if (place.technique->follows_view() == (viewport != 0)) {
-        slots.push_back(
-            {.lamp = lamps[place.lamp], .place = place, .size_px = place.given.size_px, .viewport = viewport});
+        const ShadowLamp &lamp = lamps[place.lamp];
+        slots.push_back({.lamp = lamp,
+                         .center_ws = lamp.position_ws(),
+                         .place = place,
+                         .size_px = place.given.size_px,
+                         .viewport = viewport});
         if (is_kept) {
           take_over(slots.back(), before);
         }
@@ -202,13 +206,14 @@ void SceneShadows::place_render_blocks(gpu::Device &device)
   }
 }
 
-void SceneShadows::finish()
+void SceneShadows::finish(bool all_receivers_cast)
 {
+  all_receivers_cast_ = all_receivers_cast;
   state_->casters.finish();
   std::vector<glm::vec3> positions_ws;
   for_each_slot([&](ShadowSlot &slot) {
     update_for_casters(slot, state_->casters);
-    positions_ws.push_back(slot.lamp.position_ws());
+    positions_ws.push_back(slot.center_ws);
   });
   state_->casters.distances().keep_only(positions_ws, state_->casters.list());
   state_->casters.forget_meshes();

@@ -144,7 +144,8 @@ float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Cas
     // A point at this distance may be nearer along a face's axis, by a factor of up to the square root of 3.
     near = std::min(near, std::max(0.5F * distance, 1e-4F * caster.bounds_ws.radius()));
   }
-  return std::isinf(near) ? near_min : std::max(near, near_min);
+  near = std::isinf(near) ? near_min : std::max(near, near_min);
+  return std::exp2(0.25F * std::floor(4.0F * std::log2(near)));
 }
 
 void ShadowCasters::begin()

@@ -56,19 +56,18 @@ LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
 /** Update the near plane for \a casters. \return whether it changed, or no layer is up to date. */
 static bool update_near(ShadowSlot &slot, ShadowCasters &casters)
 {
-  const glm::vec3 position_ws = slot.lamp.position_ws();
+  const glm::vec3 &position_ws = slot.center_ws;
   const float range = slot.lamp.shadow_range();
   const auto is_in_range = [&](const scene::Bounds &box) { return distance_to(box, position_ws) <= range; };
   if (slot.up_to_date != 0 && std::ranges::none_of(casters.changed(), is_in_range)) {
     return false;
   }
   const std::optional<float> clip_start = slot.lamp.shadow.clip_start;
-  const float needed = clip_start ? *clip_start : lamp_near(position_ws, range, casters.list(), &casters.distances());
-  // A near plane in front of all casters can be kept. Up to a factor of 2, the loss of precision is small.
-  if (slot.up_to_date != 0 && slot.near <= needed && slot.near >= 0.5F * needed) {
+  const float near = clip_start ? *clip_start : lamp_near(position_ws, range, casters.list(), &casters.distances());
+  if (slot.up_to_date != 0 && slot.center_near == near) {
     return false;
   }
-  slot.near = slot.center_near = needed;
+  slot.near = slot.center_near = near;
   return true;
 }
 

@@ -40,7 +40,10 @@ struct PartialLayer {
 
 /** The shadow of a lamp: its planned resources and the state of its layers. */
 struct ShadowSlot {
+  /** The lamp at its current point, \see Shadows::place_lamps. */
   ShadowLamp lamp{};
+  /** Its centre. */
+  glm::vec3 center_ws{};
   ShadowPlace place{};
   /** Edge of the layers in use, texels. At most that of `place`. \see CascadeSettings::can_resize */
   int size_px = 0;

@@ -117,11 +117,15 @@ void Shadows::place_lamps(std::span<const LampPoint> points)
   }
   for_each_slot([&](ShadowSlot &slot) {
     const auto point = std::ranges::find(points, slot.lamp.light, &LampPoint::light);
-    if (point == points.end() || point->world_from_lamp == slot.lamp.world_from_lamp) {
+    if (point == points.end()) {
+      return;
+    }
+    const float near = point_near(slot, point->offset);
+    if (point->world_from_lamp == slot.lamp.world_from_lamp && near == slot.near) {
       return;
     }
     slot.lamp.world_from_lamp = point->world_from_lamp;
-    slot.near = point_near(slot, point->offset);
+    slot.near = near;
     if (!slot.place.technique->follows_view()) {
       slot.place.technique->set_lamp_views(slot);
     }
@@ -139,6 +143,8 @@ void Shadows::write_block(gpu::Device &device)
   }
   const shared::ShadowBlock before = block_;
   for_each_slot([&](const ShadowSlot &slot) { slot.place.technique->write_block(slot, block_); });
+  const bool shows_receivers = scene_.all_receivers_cast_ && scene_.settings_.caster_faces == CasterFaces::All;
+  block_.surface_texels = shows_receivers ? SURFACE_TEXELS : SURFACE_TEXELS_UNKNOWN;
   if (!is_block_written_ || std::memcmp(&before, &block_, sizeof(block_)) != 0) {
     device.update(block_buffer_, block_);
     is_block_written_ = true;
