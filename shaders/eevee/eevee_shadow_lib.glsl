@@ -190,17 +190,15 @@ float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
   return offset == vec3(0.0) ? 0.0 : place.receiver_depth - kernel_reach(filter_kind) * slope;
 }
 
-/** ReceiverPlane::surface_depth. \a texel_depth: change of depth along the edge of a texel towards the light. */
-float surface_depth(float texel_depth, vec2 slope)
-{
-  return shadow.surface_texels * abs(texel_depth) + 2.0 * (abs(slope.x) + abs(slope.y));
-}
-
 /**
- * The nearest caster is at 2 to 2.38 times the distance of the near plane, which is rounded down to a quarter of a power of 2. This factor
- * of the quotient of the receiver's distance and the plane's gives 1.68 to 2 times the largest gap. \see shadow_search
+ * ReceiverPlane::surface_depth. \a texel_depth: change of depth along the edge of a texel towards the light. \a offset_texels: normal offset
+ * of the plane. It is NORMAL_OFFSET_TEXELS or more.
  */
-const float SEARCH_PER_NEAR = 0.84;
+float surface_depth(float texel_depth, vec2 slope, float offset_texels)
+{
+  float offset_scale = max(offset_texels / NORMAL_OFFSET_TEXELS, 1.0);
+  return offset_scale * (shadow.surface_texels * abs(texel_depth) + 2.0 * (abs(slope.x) + abs(slope.y)));
+}
 
 #ifdef USE_SHADOW_CUBE
 /** SHADOW_FILTER_… */
@@ -239,7 +237,8 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre * per_z;
   place.plane.slope = n.xy * (per_metre / (uv_scale * size)) * extent;
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
-  place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope);
+  place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope,
+                                            normal_offset / max(cube.texel_size * w, 1e-30));
   place.layer = cube.layer + face;
   // Beyond the part of the face that its layer holds, there is no surface of the picture.
   bool is_in_crop = all(lessThanEqual(abs(uv - 0.5), vec2(0.5)));
@@ -276,7 +275,7 @@ vec2 shadow_cube_search(int index, Surface surface, LightData light)
 {
   ShadowCubeData cube = shadow.cubes[index];
   vec3 from_light = surface.position_ws - light.position_ws;
-  return vec2(cube.texel_size * largest(from_light), SEARCH_PER_NEAR * length(from_light) / cube.near);
+  return vec2(cube.texel_size * largest(from_light), length(from_light) / cube.near);
 }
 #endif
 
@@ -285,7 +284,8 @@ vec2 shadow_cube_search(int index, Surface surface, LightData light)
 ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage)
 {
   ShadowPlace place;
-  vec4 receiver = map_receiver(map, surface, to_light);
+  float normal_offset;
+  vec4 receiver = map_receiver(map, surface, to_light, normal_offset);
   vec4 lookup = receiver + map.texco_from_world * vec4(offset, 0.0);
   coverage = receiver.w > 0.0 ? map_coverage(lookup) : 0.0;
   place.is_covered = coverage > 0.0;
@@ -309,7 +309,8 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
   place.plane.slope = slope / size;
   place.plane.least_depth = least_depth(place, offset, map.filter_kind);
   vec4 towards = map.texco_from_world * vec4(to_light, 0.0);
-  place.plane.surface_depth = surface_depth(map.texel_size * (towards.z - texco.z * towards.w), place.plane.slope);
+  float texel_depth = map.texel_size * (towards.z - texco.z * towards.w);
+  place.plane.surface_depth = surface_depth(texel_depth, place.plane.slope, normal_offset / max(map.texel_size * receiver.w, 1e-30));
   place.layer = map.layer;
   return place;
 }
@@ -366,7 +367,7 @@ vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_ligh
   vec4 receiver = map.texco_from_world * vec4(surface.position_ws, 1.0);
   return light.kind == LIGHT_SUN ?
              vec2(map.texel_size, 1.5 * max((1.0 - receiver.z) / depth_per_metre(map, to_light), 0.0)) :
-             max(vec2(map.texel_size * receiver.w, SEARCH_PER_NEAR * receiver.w / receiver.z), vec2(0.0));
+             max(vec2(map.texel_size * receiver.w, receiver.w / receiver.z), vec2(0.0));
 }
 
 /** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */

@@ -47,14 +47,14 @@ float kernel_reach(int filter_kind)
 const float CASCADE_FADE = 0.1;
 
 /**
- * The receiver in a map, with its normal offset: xy across the map, [0, 1] inside, and z its depth, all times w. w is 0 where
+ * The receiver in a map, with its normal offset, metres: xy across the map, [0, 1] inside, and z its depth, all times w. w is 0 where
  * receivers are lit.
  */
-vec4 map_receiver(ShadowMapData map, Surface surface, vec3 to_light)
+vec4 map_receiver(ShadowMapData map, Surface surface, vec3 to_light, out float normal_offset)
 {
   float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
   float magnitude = largest(surface.position_ws) + abs(w);
-  float normal_offset =
+  normal_offset =
       map.bias * shadow_normal_offset(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w, magnitude);
   vec4 receiver = map.texco_from_world * vec4(offset_position(surface, to_light, normal_offset), 1.0);
   return w > map.far ? vec4(0.0) : receiver;

@@ -134,6 +134,12 @@ void RenderScene::remove_objects(NodeObjects &entry)
   }
 }
 
+bool RenderScene::is_shadow_receiver(draw::ObjectIndex index) const
+{
+  const RenderObject &one = object(index);
+  return one.receives_shadow && !scene().material_of(scene().meshes()[one.mesh]).is_unlit;
+}
+
 void RenderScene::update_objects()
 {
   using enum scene::Node::Aspect;

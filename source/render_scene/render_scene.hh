@@ -133,6 +133,8 @@ class RenderScene {
   {
     return render_objects_[index];
   }
+  /** Whether lamps light the object with their shadows. \pre as object() */
+  [[nodiscard]] bool is_shadow_receiver(draw::ObjectIndex index) const;
   /**
    * The objects that a viewport leaves out, for draw::View::with_hidden: those of the nodes \a hidden and their
    * descendants; and, unless \a isolated is empty, all that are not of \a isolated or their descendants. Nodes that

@@ -158,7 +158,6 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
   }
   const shared::LightData &light = data.shared->lights.plan().lamps.lights[*index];
   const shared::LightShape &shape = data.shared->lights.plan().lamps.shapes[*index];
-  const scene::Scene &scene = engine_.scene_.scene();
   const double pixel = double(pixel_size(viewport_.drawn_view(picture_view), viewport_));
   std::vector<float> density(seen->position_depth.size(), 0.0F);
   // The lit pixels, the places that they show, and the sizes of the pixels there, metres.
@@ -173,8 +172,7 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
     if (std::exchange(object, seen_object) != seen_object) {
       is_receiver = false;
       if (object != draw::object_identity) {
-        const render_scene::RenderObject &one = engine_.scene_.object(object);
-        is_receiver = one.receives_shadow && !scene.material_of(scene.meshes()[one.mesh]).is_unlit;
+        is_receiver = engine_.scene_.is_shadow_receiver(object);
       }
     }
     const glm::vec3 position_ws(seen->position_depth[i]);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -384,24 +385,47 @@ TEST_F(ClosedRoomsGpuTest, NoSampleSeesThroughTJoints)
   EXPECT_EQ(seen_through(), 0);
 }
 
-/** Layers do not show such a surface, so that it is not taken for the inside of a closed room. */
-TEST_F(ClosedRoomsGpuTest, SurfaceThatCastsNoShadowHasTheSameEdges)
+/** Where layers do not show a receiver, it is not taken for the inside of a closed room. */
+TEST_F(ClosedRoomsGpuTest, SurfaceThatLayersDoNotShowHasTheSameEdges)
 {
-  scene::Scene scene;
-  const auto material = test::add_material(scene, glm::vec3(0.5F));
-  const auto ground =
-      test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(10)));
-  test::add_object(scene, test::add_box_mesh(scene, material), glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, 3)));
-  test::add_lamp(scene, scene::LampKind::Point, {1, 2, 7}, {0, 0, -1}, 40.0F);
-  Settings settings = offline_settings(1);
-  settings.shadow.cube_size_px = 64;
-  const auto picture = [&] {
+  const auto picture = [&](const std::function<void(scene::Node &)> &edit_node,
+                           const std::function<void(scene::Material &)> &edit_material,
+                           CasterFaces faces = CasterFaces::All) {
+    scene::Scene scene;
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    const auto ground_material = test::add_material(scene, glm::vec3(0.5F));
+    scene.edit(ground_material, edit_material);
+    const auto ground = test::add_object(scene, test::add_square_mesh(scene, ground_material),
+                                         glm::scale(glm::dmat4(1.0), glm::dvec3(10)));
+    scene.edit(ground, edit_node);
+    test::add_object(scene, test::add_box_mesh(scene, material), glm::translate(glm::dmat4(1.0), glm::dvec3(0, 0, 3)));
+    test::add_lamp(scene, scene::LampKind::Point, {1, 2, 7}, {0, 0, -1}, 40.0F);
+    Settings settings = offline_settings(1);
+    settings.shadow.cube_size_px = 64;
+    settings.shadow.caster_faces = faces;
     test::Renderer renderer(*device, scene, {64, 48}, settings);
     return renderer.picture(test::camera_at({0, -12, 9}, {0, 0, 0}, 0.9F)).pixels;
   };
-  const std::vector<glm::vec4> cast = picture();
-  scene.edit(ground, [](scene::Node &node) { node.casts_shadow = false; });
-  EXPECT_EQ(picture(), cast);
+  const auto mean = [](const std::vector<glm::vec4> &pixels) {
+    double sum = 0.0;
+    for (const glm::vec4 &pixel : pixels) {
+      sum += double(pixel.g);
+    }
+    return sum / double(pixels.size());
+  };
+  const auto keep = [](auto &) {};
+  const std::vector<glm::vec4> cast = picture(keep, keep);
+  EXPECT_EQ(picture([](scene::Node &node) { node.casts_shadow = false; }, keep), cast);
+  // The ground has a single side, which faces the lamp. The box has both.
+  EXPECT_NEAR(mean(picture(
+                  keep, [](scene::Material &one) { one.is_double_sided = false; }, CasterFaces::Back)),
+              mean(cast), 1e-4 * mean(cast));
+  const auto blended = [](scene::Material &one) {
+    one.alpha_mode = scene::AlphaMode::Blend;
+    one.alpha = 0.2F;
+  };
+  const double light = mean(picture(keep, blended));
+  EXPECT_NEAR(light, mean(picture([](scene::Node &node) { node.casts_shadow = false; }, blended)), 1e-3 * light);
 }
 
 }  // namespace
