@@ -37,11 +37,12 @@ using scene::Scene;
 
 namespace {
 
-/** Whether two cameras have the same lens. */
+/** Whether two cameras have the same lens and extras. */
 bool is_same(const Camera &a, const Camera &b)
 {
   return a.kind == b.kind && a.vertical_angle == b.vertical_angle && a.aspect == b.aspect &&
-         a.half_width == b.half_width && a.half_height == b.half_height && a.near == b.near && a.far == b.far;
+         a.half_width == b.half_width && a.half_height == b.half_height && a.near == b.near && a.far == b.far &&
+         a.extras == b.extras;
 }
 
 class SceneWriter {
@@ -123,7 +124,8 @@ class SceneWriter {
   /** Whether the node is the unchanged camera or lamp that the importer adds to a file without one. */
   [[nodiscard]] bool is_made_up(Handle<Node> handle, const Node &node) const
   {
-    if (node.name != default_name || !node.meshes.empty() || scene_.parent(handle) || scene_.first_child(handle)) {
+    if (node.name != default_name || !node.extras.empty() || !node.meshes.empty() || scene_.parent(handle) ||
+        scene_.first_child(handle)) {
       return false;
     }
     const Camera *camera = scene_.cameras().find(node.camera);

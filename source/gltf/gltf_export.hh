@@ -41,9 +41,11 @@ struct ExportError : std::runtime_error {
 void export_gltf(const scene::Scene &scene, const std::filesystem::path &path);
 
 /**
- * Parts of the file at \a path that export_gltf() does not write for a scene that was read from it, such as
+ * Variants of materials and extras of the file at \a path that a scene which is read from it cannot keep, such as
  * "2 variants of materials" and "extra 'price' of accessor 3 and 4 others". Reads the file again. Empty: none, or the
- * file is missing or not glTF.
+ * file is missing or not glTF. Extras go unnamed if their thing is not written at all: nodes of other scenes, and
+ * materials, meshes, cameras and lamps that no node uses. Those that a file shares among things, so that a scene has
+ * too many, are an import warning instead.
  */
 [[nodiscard]] std::string left_out_of_export(const std::filesystem::path &path);
 

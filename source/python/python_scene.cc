@@ -409,8 +409,17 @@ void define_scene(py::module_ &module)
   type.def("_save", &save);
   type.def(
       "save", &save_with_warning, py::arg("path"),
-      "Write the scene as glTF 2.0: .gltf or .glb. Variants of materials and extras of other programs are left out, "
-      "with a warning. Raises FileError.");
+      "Write the scene as glTF 2.0: .gltf or .glb. Variants of materials and some extras of other programs are left "
+      "out, with a warning. Raises FileError.");
+  const auto define_extras = [&type](const char *name, std::string scene::Scene::*extras, const char *sentence) {
+    type.def_property(
+        name, [extras](const ScenePtr &scene) { return scene->scene.*extras; },
+        [extras](const ScenePtr &scene, std::string text) { scene->edited().*extras = std::move(text); }, sentence);
+  };
+  define_extras("extras", &scene::Scene::extras,
+                "What other programs have added to the scene in its file, as Node.extras.");
+  define_extras("file_extras", &scene::Scene::file_extras,
+                "What other programs have added to the file itself, as Node.extras.");
   type.def_property_readonly(
       "warnings", [](const ScenePtr &scene) { return scene->scene.warnings; },
       "One text for each thing in the file that is not read.");

@@ -32,8 +32,8 @@ struct Texture;
 
 /** What the rows of `extras` say. */
 inline constexpr std::string_view extras_sentence =
-    "What other programs have added to the thing in its file: a JSON object, which export_gltf writes again. Empty: "
-    "nothing.";
+    "What other programs have added to the thing in its file: a JSON object without members that begin with gnomon_, "
+    "which export_gltf writes again. Empty: nothing.";
 
 /** Smallest length above 0, metres. The square of a smaller one would underflow in float. */
 inline constexpr double smallest_length = 1e-12;

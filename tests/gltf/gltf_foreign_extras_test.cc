@@ -256,6 +256,63 @@ TEST(GltfForeignExtras, OfAHostAreWrittenIfTheyAreAnObject)
   EXPECT_EQ(count_of(written(scene), "extras"), 0U);
 }
 
+TEST(GltfForeignExtras, OfAHostKeepTheCameraAndTheLampThatTheImporterAdded)
+{
+  GltfBuilder builder;
+  const Scene scene = import_text(builder.gltf());
+  ASSERT_TRUE(scene.is_camera_default && scene.is_lamp_default);
+  EXPECT_EQ(count_of(written(scene), "extras"), 0U);
+  const std::string extras = R"({"by":"host"})";
+  for (const auto &[handle, node] : scene.nodes()) {
+    Scene edited = scene;
+    edited.edit(handle, [&](Node &value) { value.extras = extras; });
+    EXPECT_EQ(count_of(written(edited), extras), 1U) << (node.camera ? "node of the camera" : "node of the lamp");
+  }
+  Scene edited = scene;
+  edited.edit((*scene.cameras().begin()).handle, [&](scene::Camera &camera) { camera.extras = extras; });
+  edited.edit((*scene.lamps().begin()).handle, [&](scene::Lamp &lamp) { lamp.extras = extras; });
+  EXPECT_EQ(count_of(written(edited), extras), 2U);
+}
+
+TEST(GltfForeignExtras, OfMembersThatStandBeforeOnesOfAnotherTypeDoNotCount)
+{
+  const std::string text = file_with({{"last", 4}}).dump();
+  for (const std::string first :
+       {R"("nodes":5)", R"("nodes":[5])", R"("meshes":{})", R"("extras":[])", R"("extensions":[1])",
+        R"("extensions":{"KHR_lights_punctual":null})", R"("extensions":{"KHR_lights_punctual":{"lights":{}}})",
+        R"("nodes":[{"extras":{"first":1}}],"nodes":"")"}) {
+    const Scene scene = import_text('{' + first + ',' + text.substr(1));
+    for (const auto &[kind, kept] : all_extras(scene)) {
+      EXPECT_EQ(kept, R"({"last":4})") << first << ": " << kind;
+    }
+  }
+}
+
+TEST(GltfForeignExtras, OfMembersThatDoNotCountTakeNoRoom)
+{
+  const std::string large = R"({"text":")" + std::string(40U << 20U, 'x') + R"("})";
+  const std::string materials = R"("materials":[{"extras":)" + large + "}]";
+  const TemporaryFolder folder;
+  const std::filesystem::path path =
+      folder.write("twice.gltf", R"({"asset":{"version":"2.0"},)" + materials + ',' + materials + '}');
+  EXPECT_EQ(gltf::left_out_of_export(path), "");
+}
+
+TEST(GltfForeignExtras, OfMaterialsForLinesCountAgain)
+{
+  json document = file_with(json::object());
+  document["materials"][0]["extras"] = {{"text", std::string(40U << 20U, 'x')}};
+  document["meshes"][0]["primitives"][1]["mode"] = 0;
+  const Scene scene = import_text(document.dump());
+  ASSERT_EQ(scene.materials().size(), 2U);
+  std::size_t kept = 0;
+  for (const auto &[handle, material] : scene.materials()) {
+    kept += material.extras.empty() ? 0U : 1U;
+  }
+  EXPECT_EQ(kept, 1U);
+  EXPECT_WARNING(scene, "left out: those of all things have more than 64 MiB");
+}
+
 TEST(GltfForeignExtras, OfTheLastOfTwoMembersCount)
 {
   std::string text = file_with("<extras>").dump();

@@ -318,15 +318,22 @@ class Scenes(unittest.TestCase):
             document = json.loads(Path(named).read_text())
             document["nodes"][0]["extras"] = {"price": 3}
             document["accessors"][0]["extras"] = {"by": "hand"}
+            document["scenes"][0]["extras"] = {"season": "spring"}
+            document["extras"] = {"licence": "free"}
             Path(named).write_text(json.dumps(document))
             marked = gnomon.load(named)
             self.assertEqual(marked.nodes[0].extras, '{"price":3}')
+            self.assertEqual((marked.extras, marked.file_extras), ('{"season":"spring"}', '{"licence":"free"}'))
+            marked.extras = '{"season": "autumn"}'
+            marked.file_extras = ""
             marked.nodes[0].extras = '{"price": 4}'
             marked.meshes[0].extras = '{"parts": [1, 2]}'
             with self.assertWarnsRegex(UserWarning, "saved without its extra 'by' of accessor 0$"):
                 marked.save(named)
             document = json.loads(Path(named).read_text())
             self.assertEqual(document["nodes"][0]["extras"], {"price": 4})
+            self.assertEqual(document["scenes"][0]["extras"], {"season": "autumn"})
+            self.assertNotIn("extras", document)
             self.assertEqual(document["meshes"][0]["extras"], {"parts": [1, 2]})
             marked.nodes[0].extras = "[1, 2]"
             with self.assertRaisesRegex(gnomon.FileError, "node 'square': its extras are not a JSON object"):

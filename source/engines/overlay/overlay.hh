@@ -122,7 +122,7 @@ class Overlay {
    * Draws the objects in the rectangle around the outline once for Reach::Visible, and reads that back. Reach::Through
    * repeats it without the objects that were found until there are no more, as often as objects lie behind each other.
    * Extent::Whole also draws the nodes that were found, alone and into the whole picture, until none of those that are
-   * left has a pixel outside, and the CPU looks for their vertices beyond the edges.
+   * left has a pixel outside, and the CPU looks for their vertices beyond the edges or before the near plane.
    * \throws gpu::Error if a corner is not finite
    */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> select(const draw::View &view, glm::ivec2 size_px,

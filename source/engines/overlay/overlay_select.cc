@@ -140,10 +140,12 @@ bool Overlay::is_in_picture(const draw::View &view, draw::ObjectIndex object) co
       glm::dmat4(view.clip_from_view()) * glm::dmat4(view.view_from_world()) * world_from_object;
   const auto is_there = [&](const glm::vec3 &vertex) {
     const glm::dvec4 place = clip_from_object * glm::dvec4(vertex, 1.0);
-    return place.w > 0.0 && std::abs(place.x) <= place.w && std::abs(place.y) <= place.w;
+    // The far plane has z = 0, the near plane z = w.
+    return place.w > 0.0 && place.z <= place.w && std::abs(place.x) <= place.w && std::abs(place.y) <= place.w;
   };
   if (!mesh.host_shape) {
-    return std::ranges::all_of(mesh.positions, is_there);
+    // Vertices that no index names are not drawn.
+    return std::ranges::all_of(mesh.indices, [&](std::uint32_t index) { return is_there(mesh.positions[index]); });
   }
   // The vertices are in buffers of the host.
   bool is_all_there = true;

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <new>
 #include <set>
+#include <utility>
 
 namespace gnomon::gltf {
 
@@ -47,6 +50,15 @@ JsonText members_of(ondemand::object object, Keys &taken)
   return members;
 }
 
+/** \throws std::bad_alloc, or Fault if anything but memory is missing. \a what: the thing */
+[[noreturn]] void fail_for(const simdjson::simdjson_error &error, const std::string &what)
+{
+  if (error.error() == simdjson::MEMALLOC) {
+    throw std::bad_alloc();
+  }
+  throw Fault(what, error.what());
+}
+
 class Reader {
  public:
   Reader(Warnings &warnings, Model &model) : warnings_(warnings), model_(model) {}
@@ -62,10 +74,10 @@ class Reader {
         keep(document_extras, 0, member.value());
       }
       else if (key == extensions_key) {
-        read_lights(member.value().get_object());
+        read_lights(member.value());
       }
       else if (array != arrays_with_kept_extras.end()) {
-        read_array(*array, member.value().get_array());
+        read_array(*array, member.value());
       }
     }
   }
@@ -75,38 +87,65 @@ class Reader {
   Model &model_;
   std::size_t size_ = 0;
 
-  void read_lights(ondemand::object extensions)
+  /** Calls \a read(key, value) for each member. Values of other types only stand before a member of the same key. */
+  template <typename Read>
+  static void for_members(ondemand::value value, const Read &read)
   {
-    for (ondemand::field extension : extensions) {
-      if (std::string_view(extension.unescaped_key()) != punctual_key) {
-        continue;
-      }
-      for (ondemand::field member : extension.value().get_object()) {
-        if (std::string_view(member.unescaped_key()) == lights_key) {
-          read_array(lights_key, member.value().get_array());
-        }
-      }
+    if (value.type() != ondemand::json_type::object) {
+      return;
+    }
+    for (ondemand::field member : value.get_object()) {
+      const std::string_view key = member.unescaped_key();
+      read(key, member.value());
     }
   }
 
-  void read_array(std::string_view name, ondemand::array elements)
+  void read_lights(ondemand::value extensions)
+  {
+    for_members(extensions, [&](std::string_view extension, ondemand::value punctual) {
+      if (extension != punctual_key) {
+        return;
+      }
+      for_members(punctual, [&](std::string_view key, ondemand::value lights) {
+        if (key == lights_key) {
+          read_array(lights_key, lights);
+        }
+      });
+    });
+  }
+
+  void read_array(std::string_view name, ondemand::value elements)
   {
     // The last of several arrays of the same name counts.
-    std::erase_if(model_.foreign_extras, [&](const auto &one) { return one.first.first == name; });
+    forget(name, 0, std::numeric_limits<int>::max());
+    if (elements.type() != ondemand::json_type::array) {
+      return;
+    }
     int index = 0;
-    for (ondemand::value element : elements) {
-      for (ondemand::field member : element.get_object()) {
-        if (std::string_view(member.unescaped_key()) == extras_key) {
-          keep(name, index, member.value());
+    for (ondemand::value element : elements.get_array()) {
+      for_members(element, [&](std::string_view key, ondemand::value extras) {
+        if (key == extras_key) {
+          keep(name, index, extras);
         }
-      }
+      });
       index++;
+    }
+  }
+
+  /** Removes what is kept of the elements of \a array from \a begin to before \a end. */
+  void forget(std::string_view array, int begin, int end)
+  {
+    auto &kept = model_.foreign_extras;
+    auto place = kept.lower_bound({array, begin});
+    while (place != kept.end() && place->first < std::pair(array, end)) {
+      size_ -= place->second.size();
+      place = kept.erase(place);
     }
   }
 
   void keep(std::string_view array, int index, ondemand::value extras)
   {
-    model_.foreign_extras.erase({array, index});
+    forget(array, index, index + 1);
     if (extras.type() != ondemand::json_type::object) {
       // Counted as lost.
       return;
@@ -139,7 +178,7 @@ void read_foreign_extras(std::string_view json, Warnings &warnings, Model &model
     Reader(warnings, model).read(json);
   }
   catch (const simdjson::simdjson_error &error) {
-    throw Fault("extras", error.what());
+    fail_for(error, "extras");
   }
 }
 
@@ -160,16 +199,27 @@ std::string ForeignExtras::of(std::string_view array, int index)
 /** The members of a text of a host, which may be no JSON. */
 static JsonText members_of_text(std::string_view json, const std::string &what, Keys &taken)
 {
-  const simdjson::padded_string text(json);
+  std::string text(json);
+  text.append(document_padding(), '\0');
+  const std::string_view unpadded(text.data(), json.size());
   simdjson::dom::parser parser;
   std::string changed;
   JsonValue value;
-  if (parse_json(parser, text, changed, value) != simdjson::SUCCESS || !value.is_object()) {
+  const simdjson::error_code error = parse_json(parser, unpadded, changed, value);
+  if (error == simdjson::MEMALLOC) {
+    throw std::bad_alloc();
+  }
+  if (error != simdjson::SUCCESS || !value.is_object()) {
     throw Fault(what, "its extras are not a JSON object");
   }
-  ondemand::parser again;
-  ondemand::document document = again.iterate(text);
-  return members_of(document.get_object(), taken);
+  try {
+    ondemand::parser again;
+    ondemand::document document = again.iterate(text.data(), unpadded.size(), text.size());
+    return members_of(document.get_object(), taken);
+  }
+  catch (const simdjson::simdjson_error &failure) {
+    fail_for(failure, what + ": extras");
+  }
 }
 
 void add_extras(JsonText own, const std::vector<std::string_view> &foreign, const std::string &what, JsonText &json)

@@ -390,15 +390,17 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
 Handle<Material> MaterialImporter::handle_for_lines(int gltf_material, bool has_normals, bool has_tangents)
 {
   const Handle<Material> of_triangles = handle_of(gltf_material);
-  Material material = scene_.materials()[of_triangles];
-  const bool has_frame = has_tangents || !material.has_frame();
-  if (material.is_unlit || (has_normals && has_frame)) {
+  const Material &source = scene_.materials()[of_triangles];
+  const bool has_frame = has_tangents || !source.has_frame();
+  if (source.is_unlit || (has_normals && has_frame)) {
     return of_triangles;
   }
   const auto [place, is_new] = handle_for_lines_.try_emplace({gltf_material, has_normals, has_tangents});
   if (!is_new) {
     return place->second;
   }
+  Material material = source;
+  material.extras = extras_.of("materials", gltf_material);
   if (!has_normals) {
     const glm::vec3 sum = material.base_color + material.emissive;
     const bool has_sum = !material.base_color_texture && !material.emissive_texture && sum == glm::min(sum, 1.0F);

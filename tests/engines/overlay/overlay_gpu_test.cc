@@ -578,6 +578,41 @@ TEST_F(OverlayGpuTest, ANodeIsNotWhollyInsideOfALassoThatLeavesItsMiddleOutOrBey
   EXPECT_EQ(whole(middle, Reach::Through), Nodes());
 }
 
+TEST_F(OverlayGpuTest, ANodeThatReachesBehindAnOrthographicCameraIsNotWhollyInside)
+{
+  using Nodes = std::vector<scene::Handle<scene::Node>>;
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  scene.edit(material, [](scene::Material &value) { value.is_double_sided = true; });
+  const auto box = test::add_object(scene, test::add_box_mesh(scene, material), glm::dmat4(1));
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = 6.0F;
+  camera.half_height = 4.0F;
+  const auto found = [&](Extent extent) {
+    render_scene->update();
+    return overlay->select(view(), size_px, rectangle({0, 0}, glm::dvec2(size_px)), Reach::Visible, extent);
+  };
+  EXPECT_EQ(found(Extent::Whole), Nodes{box});
+  // Its far half is seen from the inside.
+  scene.edit(box, [](scene::Node &node) { node.parent_from_node[2].z = 20.0; });
+  EXPECT_EQ(found(Extent::Part), Nodes{box});
+  EXPECT_EQ(found(Extent::Whole), Nodes());
+}
+
+TEST_F(OverlayGpuTest, VerticesOfNoTriangleDoNotKeepANodeFromAnArea)
+{
+  const auto square = add_square(0, test::add_material(scene, glm::vec3(0.5F)));
+  scene::Mesh mesh = scene.meshes()[scene.nodes()[square].meshes.front()];
+  mesh.positions.emplace_back(100.0F, 0.0F, 0.0F);
+  mesh.normals.emplace_back(mesh.normals.front());
+  if (!mesh.uvs.empty()) {
+    mesh.uvs.emplace_back(0.0F);
+  }
+  scene.replace(scene.nodes()[square].meshes.front(), std::move(mesh));
+  render_scene->update();
+  EXPECT_EQ(overlay->select(view(), size_px, rectangle({0, 0}, glm::dvec2(size_px)), Reach::Visible, Extent::Whole),
+            std::vector{square});
+}
+
 TEST_F(OverlayGpuTest, AnAreaWithinAHoleOfAMaskOrWithoutAPixelSelectsNothingOfIt)
 {
   const auto masked = add_mask();

@@ -211,7 +211,7 @@ bool CasterTree::is_covered(const Instance &instance, std::uint32_t triangle, fl
   const std::vector<glm::vec3> &alphas = instance.mesh->alphas;
   const float cover = alphas.empty() ? instance.mask.opaque_cover
                                      : instance.mask.cover(glm::dot(alphas[triangle], glm::vec3(1.0F - u - v, u, v)));
-  // As good as random.
+  // The fraction of the place serves as a random number.
   const double place = 1013.0 * double(u) + 757.0 * double(v);
   return place - std::floor(place) < double(cover);
 }
