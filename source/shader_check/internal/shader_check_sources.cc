@@ -7,7 +7,6 @@
 #include <charconv>
 #include <filesystem>
 #include <limits>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -274,7 +273,7 @@ class StageSource::Includer : public glslang::TShader::Includer {
   /** How \a file includes itself; empty: it is not one of \a open, the including files from the stage's on. */
   [[nodiscard]] std::string circle_text(std::size_t file, std::span<const std::size_t> open) const
   {
-    const auto last = std::ranges::find(std::views::reverse(open), file).base();
+    const auto last = std::find(open.rbegin(), open.rend(), file).base();
     if (last == open.begin()) {
       return {};
     }

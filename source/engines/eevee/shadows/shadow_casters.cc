@@ -145,7 +145,7 @@ float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Cas
     near = std::min(near, std::max(0.5F * distance, 1e-4F * caster.bounds_ws.radius()));
   }
   near = std::isinf(near) ? near_min : std::max(near, near_min);
-  return std::exp2(0.25F * std::floor(4.0F * std::log2(near)));
+  return std::exp2(0.0625F * std::floor(16.0F * std::log2(near)));
 }
 
 void ShadowCasters::begin()

@@ -79,7 +79,7 @@ class CasterDistances {
  * Distance of a lamp's near plane, metres. It is chosen as large as possible, because the error of depths grows with
  * distance² / near: half the distance to the nearest caster, but at least 1e-4 of the radius of that caster's bounds,
  * for lamps on the surface of a caster. Casters in front of the near plane are clamped to it and still cast shadows.
- * The result is rounded down to a quarter of a power of 2, so that most moves of casters do not change it.
+ * The result is rounded down to a sixteenth of a power of 2, so that small moves of casters do not change it.
  *
  * \a range: the range of the lamp, metres; casters beyond it have no effect. \a distances: optional cache.
  */
