@@ -197,10 +197,12 @@ float CasterTree::Mask::cover(float alpha) const
     return alpha >= cutoff ? 1.0F : 0.0F;
   }
   // The products as is_cut_out of the shaders compares them.
-  const auto bytes = std::views::iota(0U, 256U);
-  const auto least =
-      std::ranges::partition_point(bytes, [&](unsigned byte) { return alpha * (float(byte) / 255.0F) < cutoff; });
-  return least == bytes.end() ? 0.0F : texels->shares[*least];
+  const auto &shares = texels->shares;
+  const auto least = std::ranges::partition_point(shares, [&](const float &share) {
+    const auto byte = float(&share - shares.data());
+    return alpha * (byte / 255.0F) < cutoff;
+  });
+  return least == shares.end() ? 0.0F : *least;
 }
 
 bool CasterTree::is_covered(const Instance &instance, std::uint32_t triangle, float u, float v)
