@@ -27,13 +27,13 @@ json file_with(const json &extras)
   json document = json::parse(builder.gltf());
   document["extras"] = extras;
   document["scene"] = 0;
-  document["scenes"] = {{{"nodes", {0, 1, 2}}, {"extras", extras}}};
-  document["materials"] = {{{"name", "paint"}, {"extras", extras}}};
-  document["meshes"] = {{{"name", "body"}, {"primitives", {primitive, primitive}}, {"extras", extras}}};
-  document["cameras"] = {{{"name", "eye"}, {"type", "perspective"}, {"extras", extras}}};
+  document["scenes"] = json::array({{{"nodes", {0, 1, 2}}, {"extras", extras}}});
+  document["materials"] = json::array({{{"name", "paint"}, {"extras", extras}}});
+  document["meshes"] = json::array({{{"name", "body"}, {"primitives", {primitive, primitive}}, {"extras", extras}}});
+  document["cameras"] = json::array({{{"name", "eye"}, {"type", "perspective"}, {"extras", extras}}});
   document["cameras"][0]["perspective"] = {{"yfov", 1}, {"znear", 0.1}};
   json light = {{"name", "sun"}, {"type", "directional"}, {"extras", extras}};
-  document["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+  document["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
   document["nodes"] = {{{"name", "box"}, {"mesh", 0}, {"extras", extras}},
                        {{"name", "stand"}, {"camera", 0}, {"extras", extras}},
                        {{"name", "lamp"}, {"extras", extras}}};
