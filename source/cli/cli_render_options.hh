@@ -91,7 +91,7 @@ struct RenderOptions {
   }
   /** Pixels. \throws UsageError where `size` is not a size */
   [[nodiscard]] glm::ivec2 size_px() const;
-  /** As size_px(). \throws UsageError if \a device draws no picture of that size, too */
+  /** The same as size_px(). \throws UsageError, also if \a device draws no picture of that size */
   [[nodiscard]] glm::ivec2 size_px(const gpu::Device &device) const;
   /** Whether only a part of the picture is rendered, to be joined with the others by `gnomon merge`. */
   [[nodiscard]] bool is_part() const

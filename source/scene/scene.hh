@@ -92,7 +92,7 @@ class Scene {
   std::string path;
   /** The files that the importer has read, or that its file names: its own, buffers, images, pictures, functions. */
   std::vector<std::string> files{};
-  /** What other programs have added to the file and to its scene, as extras_sentence says. */
+  /** Extras of other programs, of the file and of its scene, as extras_sentence says. */
   std::string file_extras{};
   std::string extras{};
   /** Whether the importer added a camera or a lamp because the file has none. */

@@ -30,7 +30,7 @@ struct Mesh;
 struct SurfaceFunction;
 struct Texture;
 
-/** What the rows of `extras` say. */
+/** The sentence of the rows of `extras`. */
 inline constexpr std::string_view extras_sentence =
     "What other programs have added to the thing in its file: a JSON object without members that begin with gnomon_, "
     "which export_gltf writes again. Empty: nothing.";

@@ -192,7 +192,7 @@ struct Mesh {
   std::optional<HostShape> host_shape{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */
   Bounds bounds{};
-  /** What other programs have added to the glTF mesh that it is a primitive of, as extras_sentence says. */
+  /** Extras of other programs, of the glTF mesh that contains this primitive, as extras_sentence says. */
   std::string extras{};
 
   [[nodiscard]] bool has_uvs(int set) const

@@ -14,7 +14,7 @@ WITHOUT_SURFACE = {'EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'}
 WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
 # Reflectance of a dielectric at normal incidence, of which Gnomon's specular colour is a factor.
 DIELECTRIC_F0 = 0.04
-# Of a material without nodes that say otherwise. Gnomon's defaults are those of glTF, a rough metal.
+# A material without nodes has these values. Gnomon's defaults are those of glTF, a rough metal.
 MATERIAL = {'metallic': 0.0, 'roughness': 0.5}
 
 

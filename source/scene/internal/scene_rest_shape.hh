@@ -17,7 +17,7 @@ struct RestShape {
   bool has_flat_normals = false;
 };
 
-/** What a pose changes of a mesh: as many values as the mesh has positions. */
+/** The streams of a mesh that a pose changes: as many values as the mesh has positions. */
 struct PosedVertices {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;

@@ -99,7 +99,7 @@ class CasterTree {
   struct Texels {
     /** For each byte, the part of the texels whose alpha is at least that. */
     std::array<float, 256> shares{};
-    /** Of `shares`. */
+    /** Fingerprint of `shares`. */
     std::uint64_t fingerprint = 0;
 
     Texels() = default;

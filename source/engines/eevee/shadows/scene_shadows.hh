@@ -52,7 +52,8 @@ class SceneShadows {
   /** Create the resources of the plan and free those that are no longer needed. \a shaders: for the filter passes. */
   void allocate(gpu::Device &device, ShaderCache &shaders);
   void add_caster(const Caster &caster);
-  /** Call after the last add_caster. \a all_receivers_cast: each surface that receives shadows was added. */
+  /** Call after the last add_caster. \a all_receivers_cast: each surface that receives shadows was added, none blended.
+   */
   void finish(bool all_receivers_cast);
   /** Mark all layers as out of date, for example because the shaders changed. */
   void invalidate();
