@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Used by scripts/models: node models.mjs PROGRAM FOLDER SHEETS. FOLDER has the npm packages, this file and models_three.html.
+// Used by scripts/models: node models.mjs PROGRAM FOLDER SHEETS. FOLDER has the npm packages, this file, browser.mjs and models_three.html.
 import {execFile} from 'node:child_process';
 import fs from 'node:fs';
-import http from 'node:http';
 import path from 'node:path';
 import {promisify} from 'node:util';
 
-import {launch} from 'puppeteer-core';
 import validator from 'gltf-validator';
+
+import {browse, openPage, serve} from './browser.mjs';
 
 const [program, folder, sheets] = process.argv.slice(2);
 const debian = '/usr/share/assimp/models';
@@ -73,33 +73,12 @@ async function render(model, index) {
   model.gnomon = '/' + path.basename(picture);
 }
 
-/** Serves FOLDER, and Debian's models below /debian. */
-function serve() {
-  const types = {'.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.png': 'image/png'};
-  const server = http.createServer((request, response) => {
-    const url = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
-    const file = url.startsWith('/debian/') ? path.join(debian, url.slice(8)) : path.join(folder, url);
-    fs.readFile(file, (error, bytes) => {
-      response.writeHead(error ? 404 : 200, {'content-type': types[path.extname(file)] ?? 'application/octet-stream'});
-      response.end(bytes);
-    });
-  });
-  return new Promise((done) => server.listen(0, '127.0.0.1', () => done(server)));
-}
-
-const server = await serve();
-const origin = `http://127.0.0.1:${server.address().port}`;
-const browser = await launch({
-  executablePath: '/usr/bin/chromium',
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking'],
-});
+const server = await serve({'/debian/': debian, '/': folder});
+const browser = await browse('swiftshader');
 let failures = 0;
 
 async function sheet(models, name) {
-  const page = await browser.newPage();
-  page.on('console', (message) => console.error(`three.js: ${message.text()}`));
-  await page.goto(`${origin}/models_three.html`);
-  await page.waitForFunction('window.show');
+  const page = await openPage(browser, `${server.origin}/models_three.html`);
   for (const [index, model] of models.entries()) {
     process.stderr.write(`${model.name}\n`);
     try {
@@ -116,7 +95,7 @@ async function sheet(models, name) {
     }
   }
   const figures = models.map(({name, gnomon, three}) => `<figure><img src="${gnomon ?? ''}"><img src="${three ?? ''}"><figcaption>${name}</figcaption></figure>`);
-  await page.goto(`${origin}/models_three.html?sheet`);
+  await page.goto(`${server.origin}/models_three.html?sheet`);
   await page.setViewport({width: 6 * width + 30, height: 400});
   await page.evaluate((html) => {
     document.body.innerHTML = html;

@@ -10,6 +10,11 @@ layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
 layout(binding = SHADOW_MAPS_SLOT) uniform sampler2DArray shadow_maps;
 #endif
 
+/** 1: layers show the whole receiver in each sample. 0: not surely; a blended surface, for example, is in some samples. */
+SPECIALIZATION_CONSTANT(4) const int SURFACE_IN_LAYERS = IS_SURFACE_IN_LAYERS;
+/** Distance behind the receiver's plane, in texels, within which a surface in a texel may be the receiver's own. */
+const float SURFACE_TEXELS = 4.0;
+
 /** The receiver's plane in the space of a shadow layer, around a lookup. */
 struct ReceiverPlane {
   /** Position of the lookup. Texel centres are at integers. */
@@ -73,7 +78,7 @@ float caster_slope(float outer, float height, float inner)
  * its side of the end is in shadow, and a receiver beyond the end is lit. Edges of casters in front of the plane are blended.
  *
  * Where casters are beside the receiver and no lit texel shows its surface, the lit ones are beyond the end of the surface, such as those
- * outside of a closed room. The receiver is in shadow.
+ * outside of a closed room. The receiver is in shadow, if layers show it.
  */
 float receiver_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
 {
@@ -85,7 +90,7 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   vec4 lit = texels_lit(stored, receiver);
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
   vec4 on_surface = lit * step(receiver - plane.surface_depth, stored);
-  bool is_hidden = dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
+  bool is_hidden = SURFACE_IN_LAYERS != 0 && dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
   // The direction towards the casters, and the four texels one further there.
   vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
   vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;
@@ -197,7 +202,7 @@ float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
 float surface_depth(float texel_depth, vec2 slope, float offset_texels)
 {
   float offset_scale = max(offset_texels / NORMAL_OFFSET_TEXELS, 1.0);
-  return offset_scale * (shadow.surface_texels * abs(texel_depth) + 2.0 * (abs(slope.x) + abs(slope.y)));
+  return offset_scale * (SURFACE_TEXELS * abs(texel_depth) + 2.0 * (abs(slope.x) + abs(slope.y)));
 }
 
 #ifdef USE_SHADOW_CUBE

@@ -57,10 +57,6 @@ struct ShadowMapData {
 };
 SHARED_ASSERT_SIZE(ShadowMapData, 96)
 
-/** Values of `surface_texels`. */
-#define SURFACE_TEXELS 4.0f
-#define SURFACE_TEXELS_UNKNOWN 1e20f
-
 /** At most one for each light. */
 #define SHADOW_CUBE_MAX 255
 /** The number of maps that fit into the block beside the cubes. */
@@ -69,16 +65,8 @@ SHARED_ASSERT_SIZE(ShadowMapData, 96)
 struct ShadowBlock {
   ShadowCubeData cubes[SHADOW_CUBE_MAX];
   ShadowMapData maps[SHADOW_MAP_MAX];
-  /**
-   * Distance behind the receiver's plane, in texels, within which a surface in a texel may be the receiver's own.
-   * SURFACE_TEXELS_UNKNOWN where some receivers are in no layer.
-   */
-  float surface_texels;
-  float _pad0;
-  float _pad1;
-  float _pad2;
 };
-SHARED_ASSERT_SIZE(ShadowBlock, SHADOW_CUBE_MAX * 32 + SHADOW_MAP_MAX * 96 + 16)
+SHARED_ASSERT_SIZE(ShadowBlock, SHADOW_CUBE_MAX * 32 + SHADOW_MAP_MAX * 96)
 SHARED_ASSERT(UNIFORM_BLOCK_BYTES_MAX - sizeof(ShadowBlock) < sizeof(ShadowMapData))
 
 /** Content of `shadow_render_block`: the matrices that the casters of one lamp are drawn with. */

@@ -57,7 +57,7 @@ class LampBench {
     for (const eevee::Caster &caster : casters_) {
       scene_shadows_.add_caster(caster);
     }
-    scene_shadows_.finish(true);
+    scene_shadows_.finish();
   }
 
   /** Draws the layers. Measured. */

@@ -69,6 +69,8 @@ enum class Feature : std::uint32_t {
   CoarseGrid = 1U << 21,
   /** The view has clip planes. A constant of programs that write depths, or draw blended surfaces. */
   ClipPlanes = 1U << 22,
+  /** Shadow layers show the whole lit surface in each sample. A constant of programs with shadows. */
+  SurfaceInLayers = 1U << 23,
 };
 
 GNOMON_MASK_OPERATORS(Feature)
@@ -77,13 +79,14 @@ GNOMON_MASK_OPERATORS(Feature)
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
 /** Constants of programs. They select no variant. \see constants_of */
-inline constexpr Feature program_constants =
-    Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid | Feature::ClipPlanes;
+inline constexpr Feature program_constants = Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid |
+                                             Feature::ClipPlanes | Feature::SurfaceInLayers;
 
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)
 {
-  return without(features, any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm | Feature::WorldOcclusion);
+  return without(features, any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm | Feature::WorldOcclusion |
+                               Feature::SurfaceInLayers);
 }
 
 /** The kernel of percentage-closer filtering. */

@@ -225,8 +225,10 @@ Feature variant_of(const ShaderDeclaration &declaration, Feature features)
 
 Feature constants_of(const ShaderDeclaration &declaration, Feature variant)
 {
-  const Feature lighting = (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
-                           (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None);
+  const Feature lighting =
+      (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
+      (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None) |
+      (has(variant, Feature::ShadowCube | Feature::ShadowMap) ? Feature::SurfaceInLayers : Feature::None);
   switch (declaration.id) {
     case ShaderId::GBuffer:
     case ShaderId::Depth:
@@ -330,6 +332,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   }
   if (has(features & declaration.features, Feature::World)) {
     desc.defines.push_back(fmt::format("HAS_WORLD_OCCLUSION {}", int(has(features, Feature::WorldOcclusion))));
+  }
+  if (has(features & declaration.features, Feature::ShadowCube | Feature::ShadowMap)) {
+    desc.defines.push_back(fmt::format("IS_SURFACE_IN_LAYERS {}", int(has(features, Feature::SurfaceInLayers))));
   }
   if (has(features, Feature::CoarseGrid)) {
     desc.defines.emplace_back("HAS_COARSE_GRID");

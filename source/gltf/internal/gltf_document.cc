@@ -434,7 +434,7 @@ Model parse_document(std::span<const unsigned char> json, Warnings &warnings)
     throw Fault("JSON", "parse error: " + (found.empty() ? reason_of(error) : found));
   }
   Model model = DocumentReader(document, warnings).read();
-  if (warnings.has_kept_extras) {
+  if (warnings.has_kept_extras()) {
     read_foreign_extras(text, warnings, model);
   }
   return model;

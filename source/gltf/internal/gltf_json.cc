@@ -78,7 +78,7 @@ void note_foreign_extras(const Place &place, const JsonValue &extras)
       continue;
     }
     if (keeps_extras(place)) {
-      warnings.has_kept_extras = true;
+      warnings.note_kept_extras();
       return;
     }
     count(key);

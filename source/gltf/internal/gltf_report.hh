@@ -69,8 +69,15 @@ class Warnings {
   }
   /** "extra 'key' of node 'a' and 2 others"; empty: none. */
   [[nodiscard]] std::string foreign_extras() const;
-  /** Whether the document has extras of other programs that are kept. */
-  bool has_kept_extras = false;
+  /** Notes that the document has extras of other programs that are kept. No message. */
+  void note_kept_extras()
+  {
+    has_kept_extras_ = true;
+  }
+  [[nodiscard]] bool has_kept_extras() const
+  {
+    return has_kept_extras_;
+  }
 
  private:
   struct Entry {
@@ -87,6 +94,7 @@ class Warnings {
   std::map<std::pair<std::string, std::string>, std::size_t> index_of_;
   std::string first_foreign_extra_;
   std::uint64_t foreign_extra_count_ = 0;
+  bool has_kept_extras_ = false;
 
   Entry &entry(std::string_view element, std::string_view reason, bool is_counted);
 };

@@ -402,7 +402,6 @@ TEST_F(ClosedRoomsGpuTest, SurfaceThatLayersDoNotShowHasTheSameEdges)
     test::add_lamp(scene, scene::LampKind::Point, {1, 2, 7}, {0, 0, -1}, 40.0F);
     Settings settings = offline_settings(1);
     settings.shadow.cube_size_px = 64;
-    settings.shadow.caster_faces = faces;
     test::Renderer renderer(*device, scene, {64, 48}, settings);
     return renderer.picture(test::camera_at({0, -12, 9}, {0, 0, 0}, 0.9F)).pixels;
   };
@@ -426,6 +425,34 @@ TEST_F(ClosedRoomsGpuTest, SurfaceThatLayersDoNotShowHasTheSameEdges)
   };
   const double light = mean(picture(keep, blended));
   EXPECT_NEAR(light, mean(picture([](scene::Node &node) { node.casts_shadow = false; }, blended)), 1e-3 * light);
+}
+
+/** A pane is in some samples of the layers, or in none. Only its own lookups differ from those of walls. */
+TEST_F(ClosedRoomsGpuTest, APaneChangesNoOtherSurface)
+{
+  const auto picture = [&](bool has_pane) {
+    scene::Scene scene;
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    test::add_object(scene, test::add_box_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(4)));
+    const auto glass = test::add_material(scene, glm::vec3(0.5F));
+    scene.edit(glass, [](scene::Material &pane) {
+      pane.alpha_mode = scene::AlphaMode::Blend;
+      pane.alpha = 0.5F;
+    });
+    if (has_pane) {
+      // Behind the camera. It casts no shadow, so that the layers are the same.
+      const auto pane = test::add_object(scene, test::add_square_mesh(scene, glass),
+                                         glm::translate(glm::dmat4(1.0), glm::dvec3(0, -3.5, 0)));
+      scene.edit(pane, [](scene::Node &node) { node.casts_shadow = false; });
+    }
+    test::add_lamp(scene, scene::LampKind::Point, {1, 2, 7}, {0, 0, -1}, 4000.0F);
+    Settings settings = offline_settings(1);
+    settings.shadow.cube_size_px = 64;
+    test::Renderer renderer(*device, scene, {64, 48}, settings);
+    return renderer.picture(test::camera_at({0, -3, 0}, {0, 0, 1}, 1.4F)).pixels;
+  };
+  const std::vector<glm::vec4> without = picture(false);
+  EXPECT_EQ(picture(true), without) << "bit for bit";
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ class ShadowsTest : public testing::Test {
       scene_shadows.add_caster({casters[i], draw::ObjectIndex(i), &instances,
                                 fingerprint_of(std::as_bytes(std::span(&casters[i], 1))), mesh, &world_from_mesh});
     }
-    scene_shadows.finish(true);
+    scene_shadows.finish();
   }
   std::string update()
   {

@@ -108,6 +108,7 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
     case Feature::WorldOcclusion:
     case Feature::CoarseGrid:
     case Feature::ClipPlanes:
+    case Feature::SurfaceInLayers:
     case Feature::None: break;
   }
   return "";

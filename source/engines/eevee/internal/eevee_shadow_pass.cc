@@ -238,12 +238,7 @@ void ShadowPass::add_casters(render_scene::RenderScene &scene, std::span<const d
     shadows_.add_caster(
         {scene.object(index).bounds, index, kind.instances, fingerprint, mesh, &world_from_object, kind.is_blended});
   }
-  // Lines and points are in no layer, and blended surfaces are in some samples.
-  shadows_.finish(std::ranges::all_of(objects, [&](draw::ObjectIndex index) {
-    const std::uint32_t number = kind_of_[index];
-    const bool is_cast = number != 0 && kinds_[number - 1].instances != nullptr && !kinds_[number - 1].is_blended;
-    return is_cast || !scene.is_shadow_receiver(index);
-  }));
+  shadows_.finish();
   has_casters_ = true;
 }
 

@@ -72,12 +72,13 @@ void SurfacePasses::record(const Recording &recording)
   is_mirrored_.assign(objects.index_end(), false);
   std::vector<Kind> kinds;
   // By mesh and by the properties in which its objects differ: the number of the kind, from 1. 0: there is none yet.
-  std::vector<std::array<std::uint32_t, 4>> numbers(scene.scene().meshes().index_end());
+  std::vector<std::array<std::uint32_t, 8>> numbers(scene.scene().meshes().index_end());
   for (const draw::ObjectIndex index : objects_) {
     const render_scene::RenderObject &object = scene.object(index);
     const bool is_mirrored = objects.is_mirrored(index);
     is_mirrored_[index] = is_mirrored;
-    std::uint32_t &number = numbers[object.mesh.index][(is_mirrored ? 1 : 0) + (object.receives_shadow ? 2 : 0)];
+    std::uint32_t &number = numbers[object.mesh.index][(is_mirrored ? 1 : 0) + (object.receives_shadow ? 2 : 0) +
+                                                       (object.casts_shadow ? 4 : 0)];
     if (number == 0) {
       kinds.push_back(record_kind(recording, index));
       number = std::uint32_t(kinds.size());
@@ -119,8 +120,12 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
           ? TextureSet()
           : textures_of(scene, mesh, alpha_function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
   const TextureSet surface_textures = textures_of(scene, mesh, surface);
+  // Lines and points are in no layer, and blended surfaces are in some samples.
+  const bool is_in_layers =
+      object.casts_shadow && mesh.topology == scene::Topology::Triangles && !render_scene::has_open_shadow(scene, mesh);
+  const Feature shadowed = is_in_layers ? features : without(features, Feature::SurfaceInLayers);
   // An object that receives no shadows is drawn with a program without shadow lookups.
-  const Feature lighting = (object.receives_shadow ? features : without_shadows(features)) |
+  const Feature lighting = (object.receives_shadow ? shadowed : without_shadows(features)) |
                            (function.key != 0 ? lit_function_features : Feature::None);
   const bool is_transmissive = surface == MaterialClass::Transmissive;
   const bool is_deferred = depth_.is_deferred(scene, object);
@@ -143,6 +148,7 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
     add_group(kind, recording, pass, shader, state | fixed, read, textures, recording.bind);
   };
   if (is_deferred) {
+    depth_.note_deferred(is_in_layers);
     add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features | clip), side, surface, {});
   }
   else {

@@ -45,7 +45,9 @@ struct SurfaceInputs {
 /** Features of programs that settings ask for. */
 [[nodiscard]] inline Feature asked_features(const Settings &settings)
 {
-  return settings.has_multiscatter ? Feature::Multiscatter : Feature::None;
+  // Layers of front or back faces alone do not show all surfaces.
+  return (settings.has_multiscatter ? Feature::Multiscatter : Feature::None) |
+         (settings.shadow.caster_faces == CasterFaces::All ? Feature::SurfaceInLayers : Feature::None);
 }
 
 /**

@@ -206,9 +206,8 @@ void SceneShadows::place_render_blocks(gpu::Device &device)
   }
 }
 
-void SceneShadows::finish(bool all_receivers_cast)
+void SceneShadows::finish()
 {
-  all_receivers_cast_ = all_receivers_cast;
   state_->casters.finish();
   std::vector<glm::vec3> positions_ws;
   for_each_slot([&](ShadowSlot &slot) {

@@ -52,9 +52,8 @@ class SceneShadows {
   /** Create the resources of the plan and free those that are no longer needed. \a shaders: for the filter passes. */
   void allocate(gpu::Device &device, ShaderCache &shaders);
   void add_caster(const Caster &caster);
-  /** Call after the last add_caster. \a all_receivers_cast: each surface that receives shadows was added, none blended.
-   */
-  void finish(bool all_receivers_cast);
+  /** Call after the last add_caster. */
+  void finish();
   /** Mark all layers as out of date, for example because the shaders changed. */
   void invalidate();
 
@@ -130,7 +129,6 @@ class SceneShadows {
   gpu::Buffer render_buffer_;
   gpu::BufferRange render_block_;
   std::vector<std::string> limits_;
-  bool all_receivers_cast_ = false;
 };
 
 }  // namespace gnomon::eevee

@@ -143,8 +143,6 @@ void Shadows::write_block(gpu::Device &device)
   }
   const shared::ShadowBlock before = block_;
   for_each_slot([&](const ShadowSlot &slot) { slot.place.technique->write_block(slot, block_); });
-  const bool shows_receivers = scene_.all_receivers_cast_ && scene_.settings_.caster_faces == CasterFaces::All;
-  block_.surface_texels = shows_receivers ? SURFACE_TEXELS : SURFACE_TEXELS_UNKNOWN;
   if (!is_block_written_ || std::memcmp(&before, &block_, sizeof(block_)) != 0) {
     device.update(block_buffer_, block_);
     is_block_written_ = true;
