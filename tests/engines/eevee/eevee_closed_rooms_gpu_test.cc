@@ -433,6 +433,7 @@ TEST_F(ClosedRoomsGpuTest, APaneChangesNoOtherSurface)
   const auto picture = [&](bool has_pane) {
     scene::Scene scene;
     const auto material = test::add_material(scene, glm::vec3(0.5F));
+    scene.edit(material, [](scene::Material &wall) { wall.is_double_sided = true; });
     test::add_object(scene, test::add_box_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(4)));
     const auto glass = test::add_material(scene, glm::vec3(0.5F));
     scene.edit(glass, [](scene::Material &pane) {
