@@ -164,9 +164,6 @@ constexpr auto shadow_fields = std::to_array<Field>({
     {"shadow.maps[0].cascade_count", maps_offset + offsetof(ShadowMapData, cascade_count)},
     {"shadow.maps[0].filter_kind", maps_offset + offsetof(ShadowMapData, filter_kind)},
     {"shadow.maps[0].size_px", maps_offset + offsetof(ShadowMapData, size_px)},
-    {"shadow._pad0", offsetof(ShadowBlock, _pad0)},
-    {"shadow._pad1", offsetof(ShadowBlock, _pad1)},
-    {"shadow._pad2", offsetof(ShadowBlock, _pad2)},
 });
 
 constexpr auto shadow_render_fields = std::to_array<Field>({
