@@ -56,6 +56,41 @@ def paint_vertices():
         mesh.materials.append(material)
 
 
+def surface(name, kind=None):
+    """A material with a node at its surface, or without a surface."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    output = tree.nodes['Material Output']
+    tree.links.clear()
+    if kind is not None:
+        tree.links.new(tree.nodes.new(f'ShaderNode{kind}').outputs[0], output.inputs['Surface'])
+    return material
+
+
+def add_odd_surfaces():
+    """Boxes without a material, and with materials that are no Principled BSDF."""
+    black, volume, diffuse, glossy, mixed = (surface(*each) for each in (
+        ('black',), ('volume',), ('diffuse', 'BsdfDiffuse'), ('glossy', 'BsdfGlossy'), ('mixed', 'MixShader')))
+    tree = volume.node_tree
+    tree.links.new(tree.nodes.new('ShaderNodeVolumeScatter').outputs[0], tree.nodes['Material Output'].inputs['Volume'])
+    tree = diffuse.node_tree
+    node = tree.nodes.new('ShaderNodeTexImage')
+    node.image = bpy.data.images['squares']
+    tree.links.new(node.outputs['Color'], tree.nodes['Diffuse BSDF'].inputs['Color'])
+    glossy.diffuse_color = (0.9, 0.5, 0.2, 1)
+    tree = mixed.node_tree
+    tree.nodes['Principled BSDF'].inputs['Base Color'].default_value = (0.2, 0.3, 0.9, 1)
+    tree.links.new(tree.nodes['Principled BSDF'].outputs[0], tree.nodes['Mix Shader'].inputs[2])
+    for i, slots in enumerate(((), (None,), (glossy, None), (black,), (volume,), (diffuse,), (mixed,))):
+        bpy.ops.mesh.primitive_cube_add(size=0.7, location=(2.5 - 0.4 * i, 1.2 * i - 4, 0.5))
+        mesh = bpy.context.object.data
+        for each in slots:
+            mesh.materials.append(each)
+        for polygon in mesh.polygons:
+            polygon.material_index = polygon.index % max(len(slots), 1)
+
+
 def encoded(picture):
     linear = numpy.clip(picture[:, :, :3], 0, 1)
     return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
@@ -68,6 +103,7 @@ def layers_of(device, scene, camera):
 if not bpy.data.filepath:
     place_image()
     paint_vertices()
+    add_odd_surfaces()
 device = gnomon.Device()
 depsgraph = bpy.context.evaluated_depsgraph_get()
 with tempfile.TemporaryDirectory() as folder:

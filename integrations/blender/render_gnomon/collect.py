@@ -6,7 +6,7 @@ import dataclasses
 import numpy
 from mathutils import Matrix
 
-from . import closed, lamps, materials
+from . import closed, lamps, materials, objects
 from .mirror import Content, Node, Part
 
 FILE_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
@@ -14,8 +14,10 @@ WITHOUT_SURFACE = {'EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'}
 WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
 # Reflectance of a dielectric at normal incidence, of which Gnomon's specular colour is a factor.
 DIELECTRIC_F0 = 0.04
-# A material without nodes has these values. Gnomon's defaults are those of glTF, a rough metal.
-MATERIAL = {'metallic': 0.0, 'roughness': 0.5}
+# Gnomon's defaults are those of glTF, a rough metal.
+MATERIAL = {'metallic': 0.0, 'roughness': materials.ROUGHNESS}
+# The key of Content.materials of faces without a material.
+DEFAULT_SURFACE = materials.DEFAULT_NAME, None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,7 +86,7 @@ def parts_of(mesh, slots):
         arrays['uvs'] = numpy.empty((0, 2), numpy.float32) if layer is None else placed(numbers(layer.data, 'uv', 2)[corners], placing)
         arrays['colors'] = colors_of(mesh, colors, corners, vertices)
         thickness = closed.thickness(arrays['positions'], arrays['triangles']) if is_glass else 0.0
-        parts.append(Part(arrays, name and (name, round(thickness, 6))))
+        parts.append(Part(arrays, (name, round(thickness, 6)) if name else DEFAULT_SURFACE))
     return parts
 
 
@@ -180,6 +182,7 @@ class Collector:
 
     def collected(self, depsgraph, local):
         self.forget(depsgraph)
+        self.view_layer = depsgraph.view_layer
         self.remarks = []
         self.materials = {}
         self.thicknesses = {}
@@ -221,6 +224,8 @@ class Collector:
             if mesh is not None:
                 content.meshes[mesh] = self.meshes[mesh]
                 self.add_materials(self.meshes[mesh], content)
+                for remark in objects.remarks_of(thing.original, self.view_layer):
+                    self.remark(f"object '{thing.name}': {remark}")
             return Thing(mesh=mesh, casts_shadow=thing.visible_shadow)
         if thing.type not in WITHOUT_SURFACE:
             self.remark(f"object '{thing.name}': objects of the kind {thing.type} are not drawn")
@@ -288,27 +293,35 @@ class Collector:
 
     def add_materials(self, parts, content):
         for part in parts:
-            if part.material is not None and part.material not in content.materials:
+            if part.material == DEFAULT_SURFACE:
+                content.materials[part.material] = {
+                    **MATERIAL, 'name': materials.DEFAULT_NAME, 'base_color': materials.DEFAULT_COLOR, 'specular': 0.0, 'is_double_sided': True}
+            elif part.material not in content.materials:
                 name, thickness = part.material
                 content.materials[part.material] = {**self.materials[name], 'thickness': self.thicknesses.get(name, thickness)}
 
     def properties_of(self, material, content):
         values = {**MATERIAL, 'name': material.name, 'is_double_sided': not material.use_backface_culling}
-        output = materials.output_of(material.node_tree) if material.use_nodes and material.node_tree else None
-        if not material.use_nodes:
+        if not material.use_nodes or material.node_tree is None:
             return {**values, 'base_color': tuple(material.diffuse_color[:3]), 'metallic': material.metallic, 'roughness': material.roughness}
-        node = materials.source_of(output.inputs['Surface']) if output else None
-        if node is None:
-            return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
-        if node.type in ('EMISSION', 'BACKGROUND'):
+        plain = materials.plain_values(material)
+        if plain is not None:
+            return {**values, **plain, **({'alpha_mode': 'MASK'} if 'alpha' in plain else {})}
+        node = materials.surface_of(material)
+        if node.type in materials.EMISSIVE_NODES:
             color = node.inputs['Color'].default_value[:3]
             strength = node.inputs['Strength'].default_value
             return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0, 'emissive': tuple(max(c * strength, 0.0) for c in color)}
         if node.type == 'BSDF_DIFFUSE':
-            return {**values, 'specular': 0.0, **self.color_of(node.inputs['Color'], content)}
-        if node.type != 'BSDF_PRINCIPLED':
-            return {**values, 'base_color': tuple(material.diffuse_color[:3])}
-        return {**values, **self.principled(node, material, content)}
+            return {**values, 'specular': 0.0, **self.color_of(node.inputs['Color'], content), **self.normal_of(node.inputs['Normal'], content)}
+        return {**values, **self.principled(materials.principled_of(material), material, content)}
+
+    def normal_of(self, socket, content):
+        node = materials.source_of(socket)
+        image = image_of(node.inputs['Color']) if node is not None and node.type == 'NORMAL_MAP' else None
+        if image is None:
+            return {}
+        return {'normal_texture': self.texture([(image, None)], content), 'normal_scale': node.inputs['Strength'].default_value}
 
     def color_of(self, socket, content):
         image = image_of(socket)
@@ -349,10 +362,7 @@ class Collector:
         values['emissive'] = 3 * (strength,) if image else tuple(max(c, 0.0) * strength for c in emission.default_value[:3])
         if image and strength > 0:
             values['emissive_texture'] = self.texture([(image, None)], content)
-        normal = materials.source_of(node.inputs['Normal'])
-        if normal is not None and normal.type == 'NORMAL_MAP' and image_of(normal.inputs['Color']):
-            values['normal_texture'] = self.texture([(image_of(normal.inputs['Color']), None)], content)
-            values['normal_scale'] = normal.inputs['Strength'].default_value
+        values.update(self.normal_of(node.inputs['Normal'], content))
         self.remark_sockets(node, material, values)
         method = getattr(material, 'blend_method', 'OPAQUE')
         if method != 'OPAQUE':

@@ -7,7 +7,14 @@ import math
 KNOWN_NODES = {'TEX_IMAGE', 'NORMAL_MAP', 'SEPARATE_COLOR', 'SEPRGB', 'MAPPING', 'UVMAP', 'TEX_COORD', 'VERTEX_COLOR', 'MIX',
                'MIX_RGB', 'MATH', 'REROUTE', 'RGB', 'VALUE', 'ATTRIBUTE', 'GROUP_INPUT'}
 # Sockets that are not in glTF, with the value at which they have no effect. Names of 3.4, and of 4.0 and later.
-IDLE_VALUES = {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}
+IDLE_VALUES = {'BSDF_PRINCIPLED': {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}, 'BSDF_DIFFUSE': {'Roughness': 0.0}}
+# Nodes of which a file has unlit materials.
+EMISSIVE_NODES = ('EMISSION', 'BACKGROUND')
+# What Cycles draws where a face has no material: a Lambertian surface, with its name in Cryptomattes.
+DEFAULT_NAME = 'default_surface'
+DEFAULT_COLOR = (0.8, 0.8, 0.8)
+# Of surfaces that have no roughness of their own. A material of Blender has it at first.
+ROUGHNESS = 0.5
 
 
 def output_of(tree):
@@ -46,6 +53,37 @@ def surface_nodes(material):
     return upstream(output.inputs['Surface'], []) if output else []
 
 
+def surface_of(material):
+    """The node at the surface of a material; None if there is none, or if the material has no nodes."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    return source_of(output.inputs['Surface']) if output else None
+
+
+def is_volume_alone(material):
+    """Whether a material has a volume and no surface, so that light passes it."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    return output is not None and source_of(output.inputs['Surface']) is None and source_of(output.inputs['Volume']) is not None
+
+
+def principled_of(material):
+    """The Principled BSDF of which glTF's exporter takes the values: at the surface, or the first one that leads to it."""
+    above = surface_nodes(material)
+    return next((node for node in material.node_tree.nodes if node.type == 'BSDF_PRINCIPLED' and node in above), None) if above else None
+
+
+def plain_values(material):
+    """Properties of Gnomon of a material with nodes that are drawn neither from a file nor in the viewport; None for others."""
+    if not material.use_nodes or material.node_tree is None:
+        return None
+    surface = surface_of(material)
+    if surface is None:
+        values = {'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
+        return {**values, 'alpha': 0.0} if is_volume_alone(material) else values
+    if surface.type in (*EMISSIVE_NODES, 'BSDF_DIFFUSE') or principled_of(material) is not None:
+        return None
+    return {'base_color': tuple(material.diffuse_color[:3])}
+
+
 def placing_remarks(material):
     """Sentences about images that are not placed by a uv set."""
     remarks = []
@@ -69,23 +107,23 @@ def remarks_of(material):
     remarks = placing_remarks(material)
     surface = source_of(output.inputs['Surface'])
     if surface is None:
-        if not output.inputs['Volume'].is_linked:
-            remarks.append("its output has no surface")
-    elif surface.type == 'BSDF_PRINCIPLED':
+        remarks.append("it has a volume and no surface, and is not drawn" if is_volume_alone(material) else
+                       "its output has no surface, so that Blender draws it black")
+    elif surface.type in IDLE_VALUES:
         for socket in surface.inputs:
             unknown = sorted({node.name for node in upstream(socket, []) if node.type not in KNOWN_NODES})
             if unknown:
                 remarks.append(f"'{socket.name}' comes from the nodes {', '.join(unknown)}, which are not drawn; bake them to a picture")
-            idle = IDLE_VALUES.get(socket.name)
+            idle = IDLE_VALUES[surface.type].get(socket.name)
             if idle is not None and (socket.is_linked or socket.default_value != idle):
                 remarks.append(f"'{socket.name}' is not drawn")
-    # A file has these as unlit materials.
-    elif surface.type not in ('EMISSION', 'BACKGROUND'):
-        remarks.append(f"its surface is the node '{surface.name}', of which glTF's exporter writes a part at most; use a Principled BSDF")
+    elif surface.type not in EMISSIVE_NODES:
+        drawn = "a Principled BSDF before it is drawn" if principled_of(material) else "the material's colour for viewports is drawn"
+        remarks.append(f"its surface is the node '{surface.name}'; {drawn}; use a Principled BSDF")
     if source_of(output.inputs['Displacement']) is not None:
         remarks.append("its displacement is not drawn")
     volume = source_of(output.inputs['Volume'])
-    if volume is not None and volume.type != 'VOLUME_ABSORPTION':
+    if volume is not None and surface is not None and volume.type != 'VOLUME_ABSORPTION':
         remarks.append(f"its volume, the node '{volume.name}', is not drawn")
     return remarks
 
@@ -109,8 +147,7 @@ def color_name(socket):
 
 def base_color_name(material):
     """The same of the base colour of a material."""
-    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
-    surface = source_of(output.inputs['Surface']) if output else None
+    surface = surface_of(material)
     name = {'BSDF_PRINCIPLED': 'Base Color', 'BSDF_DIFFUSE': 'Color'}.get(surface.type) if surface else None
     return color_name(surface.inputs[name]) if name else None
 
