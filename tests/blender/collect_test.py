@@ -70,8 +70,9 @@ def surface(name, kind=None):
 
 def add_odd_surfaces():
     """Boxes without a material, and with materials that are no Principled BSDF."""
-    black, volume, diffuse, glossy, mixed = (surface(*each) for each in (
-        ('black',), ('volume',), ('diffuse', 'BsdfDiffuse'), ('glossy', 'BsdfGlossy'), ('mixed', 'MixShader')))
+    black, volume, diffuse, glossy, mixed, added, lamp = (surface(*each) for each in (
+        ('black',), ('volume',), ('diffuse', 'BsdfDiffuse'), ('glossy', 'BsdfGlossy'), ('mixed', 'MixShader'), ('added', 'AddShader'),
+        ('lamp', 'Emission')))
     tree = volume.node_tree
     tree.links.new(tree.nodes.new('ShaderNodeVolumeScatter').outputs[0], tree.nodes['Material Output'].inputs['Volume'])
     tree = diffuse.node_tree
@@ -82,13 +83,23 @@ def add_odd_surfaces():
     tree = mixed.node_tree
     tree.nodes['Principled BSDF'].inputs['Base Color'].default_value = (0.2, 0.3, 0.9, 1)
     tree.links.new(tree.nodes['Principled BSDF'].outputs[0], tree.nodes['Mix Shader'].inputs[2])
-    for i, slots in enumerate(((), (None,), (glossy, None), (black,), (volume,), (diffuse,), (mixed,))):
-        bpy.ops.mesh.primitive_cube_add(size=0.7, location=(2.5 - 0.4 * i, 1.2 * i - 4, 0.5))
+    tree = added.node_tree
+    emission = tree.nodes.new('ShaderNodeEmission')
+    emission.inputs['Strength'].default_value = 0.2
+    tree.links.new(emission.outputs[0], tree.nodes['Add Shader'].inputs[0])
+    tree.links.new(tree.nodes['Principled BSDF'].outputs[0], tree.nodes['Add Shader'].inputs[1])
+    tree = lamp.node_tree
+    node = tree.nodes.new('ShaderNodeTexImage')
+    node.image = bpy.data.images['squares']
+    tree.links.new(node.outputs['Color'], tree.nodes['Emission'].inputs['Color'])
+    for i, slots in enumerate(((), (None,), (glossy, None), (black,), (volume,), (diffuse,), (mixed,), (added,), (lamp,))):
+        bpy.ops.mesh.primitive_cube_add(size=0.7, location=(2.6 - 0.4 * i, 1.1 * i - 4, 0.5))
         mesh = bpy.context.object.data
         for each in slots:
             mesh.materials.append(each)
         for polygon in mesh.polygons:
             polygon.material_index = polygon.index % max(len(slots), 1)
+    bpy.context.object.is_holdout = True
 
 
 def encoded(picture):
@@ -109,7 +120,12 @@ depsgraph = bpy.context.evaluated_depsgraph_get()
 with tempfile.TemporaryDirectory() as folder:
     facts = engine.exported(depsgraph, folder)
     exported = engine.loaded(gnomon, folder, facts)
-    content = collect.Collector().content(depsgraph)
+    collector = collect.Collector()
+    content = collector.content(depsgraph)
+    # Both say the same of each thing, apart from what the viewport alone does not draw.
+    named = {line for line in collector.remarks if 'the viewport' not in line}
+    assert named == {line for line in facts['report'] if line.startswith(('object', 'material'))}, (collector.remarks, facts['report'])
+    assert bpy.data.filepath or any('holdouts' in line for line in named), named
     world = bpy.context.scene.world
     if facts['has_world_picture']:
         content.world = {'picture': numpy.load(f"{folder}/world.npy")}

@@ -681,6 +681,37 @@ class Materials(ExportTest):
         self.assertNotIn("material 'plain'", file.report)
         self.assertIn("material 'textured': 'Roughness' is not drawn", file.report)
 
+    def test_emission_is_black_otherwise(self):
+        for name in ('lamp', 'mixed'):
+            stuff = material(name)
+            tree = stuff.node_tree
+            emission, mixed = tree.nodes.new('ShaderNodeEmission'), tree.nodes.new('ShaderNodeMixShader')
+            emission.inputs['Color'].default_value, emission.inputs['Strength'].default_value = (0.5, 0.25, 0.125, 1), 4
+            tree.links.new(emission.outputs[0], mixed.inputs[2])
+            tree.links.new(tree.nodes['Principled BSDF'].outputs[0], mixed.inputs[1])
+            tree.links.new((emission if name == 'lamp' else mixed).outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+            add_box(name, stuff=stuff)
+        file = File()
+        for name in ('lamp', 'mixed'):
+            written, = file.materials(name)
+            self.assertNear(written['emissiveFactor'], (1, 0.5, 0.25))
+            self.assertEqual(written['extensions']['KHR_materials_emissive_strength'], {'emissiveStrength': 2})
+            self.assertEqual('KHR_materials_specular' in written['extensions'], name == 'lamp')
+            self.assertEqual(written['pbrMetallicRoughness']['metallicFactor'], 0)
+        self.assertNotIn("'lamp'", file.report)
+        self.assertIn("material 'mixed': its surface is the node 'Mix Shader', which is not drawn, but 'Principled BSDF' and 'Emission' before it",
+                      file.report)
+
+    def test_alpha_of_opaque_materials_is_named(self):
+        for name, mode, alpha in (('solid', 'OPAQUE', 1.0), ('opaque', 'OPAQUE', 0.5), ('clipped', 'CLIP', 0.5)):
+            stuff = material(name, Alpha=alpha)
+            stuff.blend_method = mode
+            add_box(name, stuff=stuff)
+        report = File().report
+        self.assertIn("material 'opaque': its alpha is not drawn, as in EEVEE: its blend mode is Opaque", report)
+        self.assertNotIn("'solid'", report)
+        self.assertNotIn("'clipped'", report)
+
     def test_other_surfaces_have_the_colour_for_viewports(self):
         stuff = material('glossy')
         stuff.diffuse_color = (0.25, 0.5, 1, 1)
@@ -691,7 +722,7 @@ class Materials(ExportTest):
         values = file.materials('box')[0]['pbrMetallicRoughness']
         self.assertNear(values['baseColorFactor'], (0.25, 0.5, 1, 1))
         self.assertEqual(values['metallicFactor'], 0)
-        self.assertIn("material 'glossy': its surface is the node 'Glossy BSDF'; the material's colour for viewports is drawn", file.report)
+        self.assertIn("material 'glossy': its surface is the node 'Glossy BSDF', which is not drawn, but the material's colour for viewports", file.report)
 
     def test_images_that_no_uv_set_places_are_named(self):
         for kind, projection, name in (('UV', 'FLAT', None), ('Object', 'FLAT', 'Object'), ('UV', 'BOX', 'Box')):
@@ -763,7 +794,7 @@ class Materials(ExportTest):
             add_box(stuff.name, stuff=stuff)
         report = File().report
         for text in ("material 'noisy': 'Roughness' comes from the nodes Noise Texture", "material 'noisy': its displacement",
-                     "material 'mixed': its surface is the node 'Mix Shader'; the material's colour", "material 'deep': 'Subsurface' is not drawn"):
+                     "material 'mixed': its surface is the node 'Mix Shader', which is not drawn, but the material's colour", "material 'deep': 'Subsurface' is not drawn"):
             self.assertIn(text, report)
         self.assertNotIn("plain", report)
 
@@ -812,13 +843,14 @@ class Options(ExportTest):
             add_box(name, collection=collection)
             setattr(layer.layer_collection.children[name], option, True)
         add_box('matte').visible_glossy = False
+        render.engine, self.scene.eevee.use_bloom = 'BLENDER_EEVEE', True
         render.use_border = render.use_multiview = render.use_freestyle = True
         self.scene.background_set = bpy.data.scenes.new('set')
         layer.material_override = material('clay')
         report = File().report
         for text in ("object 'held': holdouts and shadow catchers are drawn", "object 'indirect': it is hidden from the camera in Blender and is drawn",
                      "object 'matte': it is hidden from rays of the kinds glossy", "scene: the whole picture is drawn, not its render region alone",
-                     "scene: one view is drawn", "scene: lines of Freestyle", "scene: its background set 'set' is not written",
+                     "scene: one view is drawn", "scene: lines of Freestyle", "scene: EEVEE's bloom", "scene: its background set 'set' is not written",
                      "its material override 'clay' is not drawn"):
             self.assertIn(text, report)
 

@@ -388,6 +388,8 @@ class Export:
             report.add('scene', "one view is drawn, not those of stereoscopy")
         if render.use_freestyle:
             report.add('scene', "lines of Freestyle are not drawn")
+        if render.engine == 'BLENDER_EEVEE' and scene.eevee.use_bloom:
+            report.add('scene', "EEVEE's bloom is not drawn")
         if scene.background_set is not None:
             report.add('scene', f"its background set '{scene.background_set.name}' is not written")
         if layer.material_override is not None:
@@ -453,9 +455,12 @@ class Export:
         if is_diffuse:
             take_specular(element)
             return
-        values = materials.plain_values(material)
-        is_written = any(vars(element.pbr_metallic_roughness).values()) or 'KHR_materials_unlit' in (element.extensions or {})
-        if values is not None and not is_written:
+        values, is_unlit = materials.plain_values(material), 'KHR_materials_unlit' in (element.extensions or {})
+        if materials.emission_of(material) and not materials.principled_of(material) and not is_unlit:
+            # The exporter writes a black metal, which reflects at its edges.
+            write_plain(element, materials.BLACK)
+        # It reads some groups of nodes.
+        elif values is not None and not is_unlit and not any(vars(element.pbr_metallic_roughness).values()):
             write_plain(element, values)
 
     def write_mesh(self, element, mesh, slots):

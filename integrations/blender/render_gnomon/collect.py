@@ -307,14 +307,20 @@ class Collector:
         plain = materials.plain_values(material)
         if plain is not None:
             return {**values, **plain, **({'alpha_mode': 'MASK'} if 'alpha' in plain else {})}
-        node = materials.surface_of(material)
-        if node.type in materials.EMISSIVE_NODES:
-            color = node.inputs['Color'].default_value[:3]
-            strength = node.inputs['Strength'].default_value
-            return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0, 'emissive': tuple(max(c * strength, 0.0) for c in color)}
+        node, principled, emission = materials.surface_of(material), materials.principled_of(material), materials.emission_of(material)
         if node.type == 'BSDF_DIFFUSE':
             return {**values, 'specular': 0.0, **self.color_of(node.inputs['Color'], content), **self.normal_of(node.inputs['Normal'], content)}
-        return {**values, **self.principled(materials.principled_of(material), material, content)}
+        values.update(self.principled(principled, material, content) if principled else materials.BLACK)
+        if emission:
+            values.update(self.emission_of(emission.inputs['Color'], emission.inputs['Strength'].default_value, content))
+        return values
+
+    def emission_of(self, socket, strength, content):
+        image = image_of(socket)
+        if image is None:
+            return {'emissive': tuple(max(c * strength, 0.0) for c in socket.default_value[:3])}
+        emissive = {'emissive': 3 * (max(strength, 0.0),)}
+        return {**emissive, 'emissive_texture': self.texture([(image, None)], content)} if strength > 0 else emissive
 
     def normal_of(self, socket, content):
         node = materials.source_of(socket)
@@ -356,12 +362,7 @@ class Collector:
         coat = clamped(number(0.0, 'Clearcoat', 'Coat Weight'))
         if coat > 0:
             values.update(coat=coat, coat_roughness=clamped(number(0.03, 'Clearcoat Roughness', 'Coat Roughness')))
-        emission = socket('Emission', 'Emission Color')
-        strength = max(number(1.0, 'Emission Strength'), 0.0)
-        image = image_of(emission)
-        values['emissive'] = 3 * (strength,) if image else tuple(max(c, 0.0) * strength for c in emission.default_value[:3])
-        if image and strength > 0:
-            values['emissive_texture'] = self.texture([(image, None)], content)
+        values.update(self.emission_of(socket('Emission', 'Emission Color'), number(1.0, 'Emission Strength'), content))
         values.update(self.normal_of(node.inputs['Normal'], content))
         self.remark_sockets(node, material, values)
         method = getattr(material, 'blend_method', 'OPAQUE')

@@ -6,10 +6,10 @@ import math
 # Nodes of which the exporter of glTF makes something where they lead to a socket of the Principled BSDF.
 KNOWN_NODES = {'TEX_IMAGE', 'NORMAL_MAP', 'SEPARATE_COLOR', 'SEPRGB', 'MAPPING', 'UVMAP', 'TEX_COORD', 'VERTEX_COLOR', 'MIX',
                'MIX_RGB', 'MATH', 'REROUTE', 'RGB', 'VALUE', 'ATTRIBUTE', 'GROUP_INPUT'}
-# Sockets that are not in glTF, with the value at which they have no effect. Names of 3.4, and of 4.0 and later.
-IDLE_VALUES = {'BSDF_PRINCIPLED': {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}, 'BSDF_DIFFUSE': {'Roughness': 0.0}}
-# Nodes of which a file has unlit materials.
-EMISSIVE_NODES = ('EMISSION', 'BACKGROUND')
+# Surfaces that are drawn, with their sockets that are not in glTF, with the value at which they have no effect. Names of 3.4, and of 4.0 and later.
+IDLE_VALUES = {'BSDF_PRINCIPLED': {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}, 'BSDF_DIFFUSE': {'Roughness': 0.0},
+               'EMISSION': {}, 'BACKGROUND': {}}
+BLACK = {'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
 # What Cycles draws where a face has no material: a Lambertian surface, with its name in Cryptomattes.
 DEFAULT_NAME = 'default_surface'
 DEFAULT_COLOR = (0.8, 0.8, 0.8)
@@ -65,10 +65,18 @@ def is_volume_alone(material):
     return output is not None and source_of(output.inputs['Surface']) is None and source_of(output.inputs['Volume']) is not None
 
 
-def principled_of(material):
-    """The Principled BSDF of which glTF's exporter takes the values: at the surface, or the first one that leads to it."""
+def first_of(material, kind):
+    """The first node of a kind that leads to the surface of a material, of which glTF's exporter takes the values; None if there is none."""
     above = surface_nodes(material)
-    return next((node for node in material.node_tree.nodes if node.type == 'BSDF_PRINCIPLED' and node in above), None) if above else None
+    return next((node for node in material.node_tree.nodes if node.type == kind and node in above), None) if above else None
+
+
+def principled_of(material):
+    return first_of(material, 'BSDF_PRINCIPLED')
+
+
+def emission_of(material):
+    return first_of(material, 'EMISSION') or first_of(material, 'BACKGROUND')
 
 
 def plain_values(material):
@@ -77,9 +85,8 @@ def plain_values(material):
         return None
     surface = surface_of(material)
     if surface is None:
-        values = {'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
-        return {**values, 'alpha': 0.0} if is_volume_alone(material) else values
-    if surface.type in (*EMISSIVE_NODES, 'BSDF_DIFFUSE') or principled_of(material) is not None:
+        return {**BLACK, 'alpha': 0.0} if is_volume_alone(material) else BLACK
+    if surface.type == 'BSDF_DIFFUSE' or principled_of(material) or emission_of(material):
         return None
     return {'base_color': tuple(material.diffuse_color[:3])}
 
@@ -114,12 +121,15 @@ def remarks_of(material):
             unknown = sorted({node.name for node in upstream(socket, []) if node.type not in KNOWN_NODES})
             if unknown:
                 remarks.append(f"'{socket.name}' comes from the nodes {', '.join(unknown)}, which are not drawn; bake them to a picture")
+            if socket.name == 'Alpha' and material.blend_method == 'OPAQUE' and (socket.is_linked or socket.default_value != 1.0):
+                remarks.append("its alpha is not drawn, as in EEVEE: its blend mode is Opaque")
             idle = IDLE_VALUES[surface.type].get(socket.name)
             if idle is not None and (socket.is_linked or socket.default_value != idle):
                 remarks.append(f"'{socket.name}' is not drawn")
-    elif surface.type not in EMISSIVE_NODES:
-        drawn = "a Principled BSDF before it is drawn" if principled_of(material) else "the material's colour for viewports is drawn"
-        remarks.append(f"its surface is the node '{surface.name}'; {drawn}; use a Principled BSDF")
+    else:
+        parts = [f"'{node.name}'" for node in (principled_of(material), emission_of(material)) if node]
+        remarks.append(f"its surface is the node '{surface.name}', which is not drawn, but " +
+                       (f"{' and '.join(parts)} before it" if parts else "the material's colour for viewports") + "; use a Principled BSDF")
     if source_of(output.inputs['Displacement']) is not None:
         remarks.append("its displacement is not drawn")
     volume = source_of(output.inputs['Volume'])
