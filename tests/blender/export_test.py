@@ -681,6 +681,32 @@ class Materials(ExportTest):
         self.assertNotIn("material 'plain'", file.report)
         self.assertIn("material 'textured': 'Roughness' is not drawn", file.report)
 
+    def test_linked_objects_are_as_own_ones(self):
+        stuff = material('linked')
+        tree = stuff.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeBsdfDiffuse').outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+        tree.nodes['Diffuse BSDF'].inputs['Color'].default_value = (0.25, 0.5, 1, 1)
+        for name, slots in (('diffuse', [stuff]), ('bare', []), ('empty', [None])):
+            thing = add_box(name)
+            for each in slots:
+                thing.data.materials.append(each)
+            thing.hide_viewport = True
+            subdivision = thing.modifiers.new('subdivision', 'SUBSURF')
+            subdivision.render_levels = 1
+        bpy.ops.wm.save_as_mainfile(filepath=f"{FOLDER}/library.blend")
+        bpy.ops.wm.read_homefile(use_empty=True)
+        with bpy.data.libraries.load(f"{FOLDER}/library.blend", link=True) as (there, here):
+            here.objects = there.objects
+        for thing in here.objects:
+            bpy.context.scene.collection.objects.link(thing)
+        file = File()
+        self.assertEqual(file.materials('diffuse')[0]['extensions'], LAMBERTIAN)
+        self.assertEqual(file.materials('diffuse')[0]['pbrMetallicRoughness']['baseColorFactor'], [0.25, 0.5, 1, 1])
+        self.assertEqual(file.materials('bare') + file.materials('empty'), 2 * [DEFAULT_SURFACE])
+        for name in ('diffuse', 'bare', 'empty'):
+            primitive = file.json['meshes'][file.node(name)['mesh']]['primitives'][0]
+            self.assertEqual(file.json['accessors'][primitive['indices']]['count'], 6 * 4 * 6, name)
+
     def test_emission_is_black_otherwise(self):
         for name in ('lamp', 'mixed'):
             stuff = material(name)

@@ -317,7 +317,7 @@ class Export:
 
     def replace_diffuse(self):
         """The exporter reads Principled BSDFs alone."""
-        for material in (each for each in bpy.data.materials if each.library is None):
+        for material in bpy.data.materials:
             surface = materials.surface_of(material)
             if surface is not None and surface.type == 'BSDF_DIFFUSE':
                 self.diffuse[material.name_full] = materials.remarks_of(material)
@@ -388,7 +388,7 @@ class Export:
             report.add('scene', "one view is drawn, not those of stereoscopy")
         if render.use_freestyle:
             report.add('scene', "lines of Freestyle are not drawn")
-        if render.engine == 'BLENDER_EEVEE' and scene.eevee.use_bloom:
+        if render.engine == 'BLENDER_EEVEE' and getattr(scene.eevee, 'use_bloom', False):
             report.add('scene', "EEVEE's bloom is not drawn")
         if scene.background_set is not None:
             report.add('scene', f"its background set '{scene.background_set.name}' is not written")

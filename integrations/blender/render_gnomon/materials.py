@@ -121,7 +121,7 @@ def remarks_of(material):
             unknown = sorted({node.name for node in upstream(socket, []) if node.type not in KNOWN_NODES})
             if unknown:
                 remarks.append(f"'{socket.name}' comes from the nodes {', '.join(unknown)}, which are not drawn; bake them to a picture")
-            if socket.name == 'Alpha' and material.blend_method == 'OPAQUE' and (socket.is_linked or socket.default_value != 1.0):
+            if socket.name == 'Alpha' and getattr(material, 'blend_method', None) == 'OPAQUE' and (socket.is_linked or socket.default_value != 1.0):
                 remarks.append("its alpha is not drawn, as in EEVEE: its blend mode is Opaque")
             idle = IDLE_VALUES[surface.type].get(socket.name)
             if idle is not None and (socket.is_linked or socket.default_value != idle):
