@@ -102,6 +102,19 @@ def add_odd_surfaces():
     bpy.context.object.is_holdout = True
 
 
+def check_remarks():
+    """A colour that no image gives is a remark of the viewport, whichever surface has it."""
+    for kind in ('BsdfPrincipled', 'BsdfDiffuse', 'Emission'):
+        material = surface(f'linked {kind}', kind)
+        tree = material.node_tree
+        socket = tree.nodes['Material Output'].inputs['Surface'].links[0].from_node.inputs[0]
+        tree.links.new(tree.nodes.new('ShaderNodeRGB').outputs[0], socket)
+        collector = collect.Collector()
+        collector.material_of(material, mirror.Content())
+        assert collector.remarks == [f"material '{material.name}': what '{socket.name}' is linked to is not drawn in the viewport"], collector.remarks
+        bpy.data.materials.remove(material)
+
+
 def encoded(picture):
     linear = numpy.clip(picture[:, :, :3], 0, 1)
     return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
@@ -115,6 +128,7 @@ if not bpy.data.filepath:
     place_image()
     paint_vertices()
     add_odd_surfaces()
+    check_remarks()
 device = gnomon.Device()
 depsgraph = bpy.context.evaluated_depsgraph_get()
 with tempfile.TemporaryDirectory() as folder:

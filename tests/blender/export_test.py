@@ -808,6 +808,16 @@ class Materials(ExportTest):
             for color, written in zip((0.5, 0.25, 1), volume['attenuationColor']):
                 self.assertAlmostEqual(written ** (d / volume['attenuationDistance']), math.exp(-2 * (1 - color) * d), 5)
 
+    def test_attributes_of_objects_are_named(self):
+        for kind, is_named in (('GEOMETRY', False), ('OBJECT', True)):
+            stuff = material(kind)
+            tree = stuff.node_tree
+            node = tree.nodes.new('ShaderNodeAttribute')
+            node.attribute_type, node.attribute_name = kind, 'color'
+            tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+            add_box(kind, stuff=stuff).data.color_attributes.new('color', 'FLOAT_COLOR', 'POINT')
+            self.assertEqual(f"material '{kind}': 'Base Color' comes from the nodes Attribute" in File().report, is_named)
+
     def test_what_is_not_drawn_is_named(self):
         noisy, mixed, deep = material('noisy'), material('mixed'), material('deep', Subsurface=0.5)
         tree = noisy.node_tree

@@ -75,7 +75,8 @@ def take_specular(element):
 def write_plain(element, values):
     """Writes materials.plain_values into a material of the file."""
     element.pbr_metallic_roughness = gltf_class('MaterialPBRMetallicRoughness').from_dict({
-        'baseColorFactor': [*values['base_color'], values.get('alpha', 1.0)], 'metallicFactor': 0.0, 'roughnessFactor': materials.ROUGHNESS})
+        'baseColorFactor': [*values['base_color'], values.get('alpha', 1.0)], 'metallicFactor': 0.0,
+        'roughnessFactor': materials.ROUGHNESS})
     if 'alpha' in values:
         element.alpha_mode, element.alpha_cutoff = 'MASK', 0.5
     if 'specular' in values:
@@ -449,10 +450,11 @@ class Export:
         return extras
 
     def write_material(self, element, material):
-        is_diffuse = material.name_full in self.diffuse
-        self.report.add_all(f"material '{material.name}'", self.diffuse[material.name_full] if is_diffuse else materials.remarks_of(material))
+        diffuse_remarks = self.diffuse.get(material.name_full)
+        remarks = materials.remarks_of(material) if diffuse_remarks is None else diffuse_remarks
+        self.report.add_all(f"material '{material.name}'", remarks)
         add_extras(element, own_extras(material))
-        if is_diffuse:
+        if diffuse_remarks is not None:
             take_specular(element)
             return
         values, is_unlit = materials.plain_values(material), 'KHR_materials_unlit' in (element.extensions or {})

@@ -16,6 +16,12 @@ WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
 DIELECTRIC_F0 = 0.04
 # Gnomon's defaults are those of glTF, a rough metal.
 MATERIAL = {'metallic': 0.0, 'roughness': materials.ROUGHNESS}
+# The textures of sockets, by the type of their node.
+TEXTURES = {
+    'BSDF_PRINCIPLED': {'Base Color': 'base_color_texture', 'Metallic': 'metallic_roughness_texture', 'Roughness': 'metallic_roughness_texture',
+                        'Emission': 'emissive_texture', 'Emission Color': 'emissive_texture', 'Normal': 'normal_texture'},
+    'BSDF_DIFFUSE': {'Color': 'base_color_texture', 'Normal': 'normal_texture'},
+    'EMISSION': {'Color': 'emissive_texture'}, 'BACKGROUND': {'Color': 'emissive_texture'}}
 # The key of Content.materials of faces without a material.
 DEFAULT_SURFACE = materials.DEFAULT_NAME, None
 
@@ -295,7 +301,8 @@ class Collector:
         for part in parts:
             if part.material == DEFAULT_SURFACE:
                 content.materials[part.material] = {
-                    **MATERIAL, 'name': materials.DEFAULT_NAME, 'base_color': materials.DEFAULT_COLOR, 'specular': 0.0, 'is_double_sided': True}
+                    **MATERIAL, 'name': materials.DEFAULT_NAME, 'base_color': materials.DEFAULT_COLOR, 'specular': 0.0,
+                    'is_double_sided': True}
             elif part.material not in content.materials:
                 name, thickness = part.material
                 content.materials[part.material] = {**self.materials[name], 'thickness': self.thicknesses.get(name, thickness)}
@@ -309,10 +316,13 @@ class Collector:
             return {**values, **plain, **({'alpha_mode': 'MASK'} if 'alpha' in plain else {})}
         node, principled, emission = materials.surface_of(material), materials.principled_of(material), materials.emission_of(material)
         if node.type == 'BSDF_DIFFUSE':
-            return {**values, 'specular': 0.0, **self.color_of(node.inputs['Color'], content), **self.normal_of(node.inputs['Normal'], content)}
+            values.update({'specular': 0.0, **self.color_of(node.inputs['Color'], content), **self.normal_of(node.inputs['Normal'], content)})
+            self.remark_sockets(node, material, values)
+            return values
         values.update(self.principled(principled, material, content) if principled else materials.BLACK)
         if emission:
             values.update(self.emission_of(emission.inputs['Color'], emission.inputs['Strength'].default_value, content))
+            self.remark_sockets(emission, material, values)
         return values
 
     def emission_of(self, socket, strength, content):
@@ -373,14 +383,13 @@ class Collector:
         return values
 
     def remark_sockets(self, node, material, values):
-        """Names the linked sockets of a Principled BSDF that are not drawn, unless materials.remarks_of names them."""
-        drawn = {'Base Color': 'base_color_texture', 'Metallic': 'metallic_roughness_texture', 'Roughness': 'metallic_roughness_texture',
-                 'Emission': 'emissive_texture', 'Emission Color': 'emissive_texture', 'Normal': 'normal_texture'}
+        """Names the linked sockets of a surface that are not drawn, unless materials.remarks_of names them."""
+        drawn = TEXTURES[node.type]
         for socket in (each for each in node.inputs if each.is_linked):
             nodes = materials.upstream(socket, [])
-            if any(each.type not in materials.KNOWN_NODES for each in nodes):
+            if not all(materials.is_known(each) for each in nodes):
                 continue
-            if socket.name == 'Base Color' and materials.color_name(socket) is not None:
+            if drawn.get(socket.name) == 'base_color_texture' and materials.color_name(socket) is not None:
                 continue
             is_alpha = socket.name == 'Alpha' and image_of(socket) is not None and image_of(socket) == image_of(node.inputs['Base Color'])
             if not is_alpha and (values.get(drawn.get(socket.name)) is None or (socket.name != 'Normal' and image_of(socket) is None)):

@@ -6,7 +6,8 @@ import math
 # Nodes of which the exporter of glTF makes something where they lead to a socket of the Principled BSDF.
 KNOWN_NODES = {'TEX_IMAGE', 'NORMAL_MAP', 'SEPARATE_COLOR', 'SEPRGB', 'MAPPING', 'UVMAP', 'TEX_COORD', 'VERTEX_COLOR', 'MIX',
                'MIX_RGB', 'MATH', 'REROUTE', 'RGB', 'VALUE', 'ATTRIBUTE', 'GROUP_INPUT'}
-# Surfaces that are drawn, with their sockets that are not in glTF, with the value at which they have no effect. Names of 3.4, and of 4.0 and later.
+# Surfaces that are drawn, with their sockets that are not in glTF and the values at which these have no effect. Names of 3.4, and of 4.0 and
+# later.
 IDLE_VALUES = {'BSDF_PRINCIPLED': {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}, 'BSDF_DIFFUSE': {'Roughness': 0.0},
                'EMISSION': {}, 'BACKGROUND': {}}
 BLACK = {'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
@@ -15,6 +16,11 @@ DEFAULT_NAME = 'default_surface'
 DEFAULT_COLOR = (0.8, 0.8, 0.8)
 # Of surfaces that have no roughness of their own. A material of Blender has it at first.
 ROUGHNESS = 0.5
+
+
+def is_known(node):
+    """Whether a node is of KNOWN_NODES and does not read an attribute of an object."""
+    return node.type in KNOWN_NODES and not (node.type == 'ATTRIBUTE' and node.attribute_type != 'GEOMETRY')
 
 
 def output_of(tree):
@@ -66,7 +72,7 @@ def is_volume_alone(material):
 
 
 def first_of(material, kind):
-    """The first node of a kind that leads to the surface of a material, of which glTF's exporter takes the values; None if there is none."""
+    """The first node of a kind that leads to the surface of a material, which glTF's exporter reads; None if there is none."""
     above = surface_nodes(material)
     return next((node for node in material.node_tree.nodes if node.type == kind and node in above), None) if above else None
 
@@ -118,10 +124,11 @@ def remarks_of(material):
                        "its output has no surface, so that Blender draws it black")
     elif surface.type in IDLE_VALUES:
         for socket in surface.inputs:
-            unknown = sorted({node.name for node in upstream(socket, []) if node.type not in KNOWN_NODES})
+            unknown = sorted({node.name for node in upstream(socket, []) if not is_known(node)})
             if unknown:
                 remarks.append(f"'{socket.name}' comes from the nodes {', '.join(unknown)}, which are not drawn; bake them to a picture")
-            if socket.name == 'Alpha' and getattr(material, 'blend_method', None) == 'OPAQUE' and (socket.is_linked or socket.default_value != 1.0):
+            is_opaque = getattr(material, 'blend_method', None) == 'OPAQUE'
+            if socket.name == 'Alpha' and is_opaque and (socket.is_linked or socket.default_value != 1.0):
                 remarks.append("its alpha is not drawn, as in EEVEE: its blend mode is Opaque")
             idle = IDLE_VALUES[surface.type].get(socket.name)
             if idle is not None and (socket.is_linked or socket.default_value != idle):
