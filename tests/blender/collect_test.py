@@ -56,6 +56,65 @@ def paint_vertices():
         mesh.materials.append(material)
 
 
+def surface(name, kind=None):
+    """A material with a node at its surface, or without a surface."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    output = tree.nodes['Material Output']
+    tree.links.clear()
+    if kind is not None:
+        tree.links.new(tree.nodes.new(f'ShaderNode{kind}').outputs[0], output.inputs['Surface'])
+    return material
+
+
+def add_odd_surfaces():
+    """Boxes without a material, and with materials that are no Principled BSDF."""
+    black, volume, diffuse, glossy, mixed, added, lamp = (surface(*each) for each in (
+        ('black',), ('volume',), ('diffuse', 'BsdfDiffuse'), ('glossy', 'BsdfGlossy'), ('mixed', 'MixShader'), ('added', 'AddShader'),
+        ('lamp', 'Emission')))
+    tree = volume.node_tree
+    tree.links.new(tree.nodes.new('ShaderNodeVolumeScatter').outputs[0], tree.nodes['Material Output'].inputs['Volume'])
+    tree = diffuse.node_tree
+    node = tree.nodes.new('ShaderNodeTexImage')
+    node.image = bpy.data.images['squares']
+    tree.links.new(node.outputs['Color'], tree.nodes['Diffuse BSDF'].inputs['Color'])
+    glossy.diffuse_color = (0.9, 0.5, 0.2, 1)
+    tree = mixed.node_tree
+    tree.nodes['Principled BSDF'].inputs['Base Color'].default_value = (0.2, 0.3, 0.9, 1)
+    tree.links.new(tree.nodes['Principled BSDF'].outputs[0], tree.nodes['Mix Shader'].inputs[2])
+    tree = added.node_tree
+    emission = tree.nodes.new('ShaderNodeEmission')
+    emission.inputs['Strength'].default_value = 0.2
+    tree.links.new(emission.outputs[0], tree.nodes['Add Shader'].inputs[0])
+    tree.links.new(tree.nodes['Principled BSDF'].outputs[0], tree.nodes['Add Shader'].inputs[1])
+    tree = lamp.node_tree
+    node = tree.nodes.new('ShaderNodeTexImage')
+    node.image = bpy.data.images['squares']
+    tree.links.new(node.outputs['Color'], tree.nodes['Emission'].inputs['Color'])
+    for i, slots in enumerate(((), (None,), (glossy, None), (black,), (volume,), (diffuse,), (mixed,), (added,), (lamp,))):
+        bpy.ops.mesh.primitive_cube_add(size=0.7, location=(2.6 - 0.4 * i, 1.1 * i - 4, 0.5))
+        mesh = bpy.context.object.data
+        for each in slots:
+            mesh.materials.append(each)
+        for polygon in mesh.polygons:
+            polygon.material_index = polygon.index % max(len(slots), 1)
+    bpy.context.object.is_holdout = True
+
+
+def check_remarks():
+    """A colour that no image gives is a remark of the viewport, whichever surface has it."""
+    for kind in ('BsdfPrincipled', 'BsdfDiffuse', 'Emission'):
+        material = surface(f'linked {kind}', kind)
+        tree = material.node_tree
+        socket = tree.nodes['Material Output'].inputs['Surface'].links[0].from_node.inputs[0]
+        tree.links.new(tree.nodes.new('ShaderNodeRGB').outputs[0], socket)
+        collector = collect.Collector()
+        collector.material_of(material, mirror.Content())
+        assert collector.remarks == [f"material '{material.name}': what '{socket.name}' is linked to is not drawn in the viewport"], collector.remarks
+        bpy.data.materials.remove(material)
+
+
 def encoded(picture):
     linear = numpy.clip(picture[:, :, :3], 0, 1)
     return numpy.where(linear <= 0.0031308, 12.92 * linear, 1.055 * numpy.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)
@@ -68,12 +127,19 @@ def layers_of(device, scene, camera):
 if not bpy.data.filepath:
     place_image()
     paint_vertices()
+    add_odd_surfaces()
+    check_remarks()
 device = gnomon.Device()
 depsgraph = bpy.context.evaluated_depsgraph_get()
 with tempfile.TemporaryDirectory() as folder:
     facts = engine.exported(depsgraph, folder)
     exported = engine.loaded(gnomon, folder, facts)
-    content = collect.Collector().content(depsgraph)
+    collector = collect.Collector()
+    content = collector.content(depsgraph)
+    # Both say the same of each thing, apart from what the viewport alone does not draw.
+    named = {line for line in collector.remarks if 'the viewport' not in line}
+    assert named == {line for line in facts['report'] if line.startswith(('object', 'material'))}, (collector.remarks, facts['report'])
+    assert bpy.data.filepath or any('holdouts' in line for line in named), named
     world = bpy.context.scene.world
     if facts['has_world_picture']:
         content.world = {'picture': numpy.load(f"{folder}/world.npy")}

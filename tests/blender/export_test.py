@@ -15,6 +15,10 @@ from mathutils import Matrix, Quaternion, Vector
 
 FOLDER = sys.argv[sys.argv.index('--') + 1]
 LUMEN_PER_WATT = 683
+LAMBERTIAN = {'KHR_materials_specular': {'specularFactor': 0.0}}
+# Of faces without a material, as Cycles draws them.
+DEFAULT_SURFACE = {'name': 'default_surface', 'doubleSided': True, 'extensions': LAMBERTIAN, 'pbrMetallicRoughness': {
+    'baseColorFactor': [0.8, 0.8, 0.8, 1.0], 'metallicFactor': 0.0, 'roughnessFactor': 0.5}}
 
 
 def add(name, data, location=(0, 0, 0), collection=None):
@@ -87,6 +91,10 @@ class File:
         count = accessor['count'] * int(accessor['type'][-1])
         path = os.path.join(FOLDER, self.json['buffers'][0]['uri'])
         return numpy.fromfile(path, numpy.float32, count, offset=view.get('byteOffset', 0)).reshape(accessor['count'], -1)
+
+    def materials(self, name):
+        """Those of the primitives of a node."""
+        return [self.json['materials'][each['material']] for each in self.json['meshes'][self.node(name)['mesh']]['primitives']]
 
     def light(self, name):
         index = self.node(name)['extensions']['KHR_lights_punctual']['light']
@@ -340,8 +348,8 @@ class Objects(ExportTest):
         mesh = add_box('plain').data
         mesh.materials.append(None)
         file = File()
-        self.assertNotIn('material', file.json['meshes'][file.node('plain')['mesh']]['primitives'][0])
-        self.assertEqual(([each['name'] for each in file.json['materials']], list(mesh.materials)), (['stuff'], [None]))
+        self.assertEqual(file.materials('plain'), [DEFAULT_SURFACE])
+        self.assertEqual(({each['name'] for each in file.json['materials']}, list(mesh.materials)), ({'stuff', 'default_surface'}, [None]))
 
     def test_an_export_that_fails_leaves_the_scene_as_it_was(self):
         subdivision = add_box().modifiers.new('subdivision', 'SUBSURF')
@@ -532,6 +540,31 @@ class Objects(ExportTest):
         camera.type = 'PANO'
         self.assertIn("camera 'third': a panoramic camera", File().report)
 
+    def test_orthographic_cameras_have_the_scale_on_the_side_that_the_sensor_fits(self):
+        thing = self.scene.camera = add('eye', bpy.data.cameras.new('eye'))
+        thing.data.type, thing.data.ortho_scale = 'ORTHO', 6.0
+        for width, height, fit, expected in (
+                (200, 100, 'AUTO', (3, 1.5)), (200, 100, 'HORIZONTAL', (3, 1.5)), (200, 100, 'VERTICAL', (6, 3)),
+                (100, 200, 'AUTO', (1.5, 3)), (100, 200, 'HORIZONTAL', (3, 6)), (100, 200, 'VERTICAL', (1.5, 3))):
+            self.scene.render.resolution_x, self.scene.render.resolution_y, thing.data.sensor_fit = width, height, fit
+            written = File().json['cameras'][0]['orthographic']
+            self.assertNear((written['xmag'], written['ymag']), expected)
+
+    def test_pixels_are_square(self):
+        thing = self.scene.camera = add('eye', bpy.data.cameras.new('eye'))
+        render = self.scene.render
+        render.resolution_x, render.resolution_y = 160, 90
+        for kind, name in (('PERSP', 'perspective'), ('ORTHO', 'orthographic')):
+            thing.data.type, render.pixel_aspect_x, thing.data.shift_y = kind, 1.0, 0.3
+            square = File()
+            self.assertNotIn("pixels", square.report)
+            render.pixel_aspect_x = 2.0
+            file = File()
+            self.assertIn("scene: its pixels of 2 to 1 are drawn square", file.report)
+            self.assertEqual(file.json['cameras'][0][name], square.json['cameras'][0][name])
+            self.assertEqual(file.extras('eye'), square.extras('eye'))
+            self.assertEqual(render.pixel_aspect_x, 2.0)
+
     def test_shift_and_depth_of_field(self):
         thing = self.scene.camera = add('eye', bpy.data.cameras.new('eye'), (0, -5, 0))
         thing.rotation_euler.x = math.pi / 2
@@ -579,6 +612,144 @@ class Objects(ExportTest):
 
 
 class Materials(ExportTest):
+    def test_faces_without_a_material_have_the_surface_of_cycles(self):
+        add_box('bare')
+        add_box('empty').data.materials.append(None)
+        box = add_box('mixed', stuff=material('red'))
+        box.data.materials.append(None)
+        for polygon in box.data.polygons:
+            polygon.material_index = polygon.index % 2
+        # Slots of objects.
+        own = add_box('own', stuff=material('hidden'))
+        own.material_slots[0].link = 'OBJECT'
+        add('meta', bpy.data.metaballs.new('meta')).data.elements.new()
+        text = add('text', bpy.data.curves.new('text', 'FONT'))
+        text.data.body = 'a'
+        file = File()
+        for name in ('bare', 'empty', 'own', 'meta', 'text'):
+            self.assertEqual(file.materials(name), [DEFAULT_SURFACE], name)
+        self.assertEqual([each['name'] for each in file.materials('mixed')], ['red', 'default_surface'])
+        self.assertEqual([each['name'] for each in file.json['materials']].count('default_surface'), 1)
+        self.assertNotIn('materials', File(export_materials='PLACEHOLDER').json)
+
+    def test_a_material_without_a_surface_is_black_or_a_volume_alone(self):
+        without, volume, unlinked = material('without'), material('volume'), material('unlinked')
+        without.node_tree.nodes.clear()
+        for stuff in (volume, unlinked):
+            stuff.node_tree.links.clear()
+        tree = volume.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeVolumePrincipled').outputs[0], tree.nodes['Material Output'].inputs['Volume'])
+        for stuff in (without, volume, unlinked):
+            add_box(stuff.name, stuff=stuff)
+        file = File()
+        for name in ('without', 'unlinked'):
+            written, = file.materials(name)
+            self.assertEqual(written['pbrMetallicRoughness'], {**DEFAULT_SURFACE['pbrMetallicRoughness'], 'baseColorFactor': [0, 0, 0, 1]})
+            self.assertEqual(written['extensions'], LAMBERTIAN)
+            self.assertIn(f"material '{name}': its output has no surface, so that Blender draws it black" if name == 'unlinked' else
+                          f"material '{name}': it has no output, so that Blender draws it black", file.report)
+        written, = file.materials('volume')
+        self.assertEqual((written['alphaMode'], written['pbrMetallicRoughness']['baseColorFactor'][3]), ('MASK', 0))
+        self.assertIn("material 'volume': it has a volume and no surface, and is not drawn", file.report)
+
+    def test_diffuse_surfaces_are_lambertian(self):
+        images = {}
+        for name in ('plain', 'textured'):
+            stuff = material(name)
+            tree = stuff.node_tree
+            tree.nodes.remove(tree.nodes['Principled BSDF'])
+            diffuse = tree.nodes.new('ShaderNodeBsdfDiffuse')
+            diffuse.inputs['Color'].default_value = (0.25, 0.5, 1, 1)
+            tree.links.new(diffuse.outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+            if name == 'textured':
+                diffuse.inputs['Roughness'].default_value = 0.5
+                image = tree.nodes.new('ShaderNodeTexImage')
+                image.image = bpy.data.images.new('image', 4, 4)
+                tree.links.new(image.outputs['Color'], diffuse.inputs['Color'])
+            add_box(name, stuff=stuff).data.uv_layers.new()
+            images[name] = {(link.from_node.name, link.to_node.name) for link in tree.links}, sorted(node.name for node in tree.nodes)
+        file = File()
+        for name in images:
+            written, = file.materials(name)
+            self.assertEqual(written['extensions'], LAMBERTIAN)
+            self.assertEqual(written['pbrMetallicRoughness']['metallicFactor'], 0)
+            self.assertEqual('baseColorTexture' in written['pbrMetallicRoughness'], name == 'textured')
+            tree = bpy.data.materials[name].node_tree
+            self.assertEqual(({(link.from_node.name, link.to_node.name) for link in tree.links}, sorted(node.name for node in tree.nodes)),
+                             images[name])
+        self.assertNear(file.materials('plain')[0]['pbrMetallicRoughness']['baseColorFactor'], (0.25, 0.5, 1, 1))
+        self.assertNotIn("material 'plain'", file.report)
+        self.assertIn("material 'textured': 'Roughness' is not drawn", file.report)
+
+    def test_linked_objects_are_as_own_ones(self):
+        stuff = material('linked')
+        tree = stuff.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeBsdfDiffuse').outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+        tree.nodes['Diffuse BSDF'].inputs['Color'].default_value = (0.25, 0.5, 1, 1)
+        for name, slots in (('diffuse', [stuff]), ('bare', []), ('empty', [None])):
+            thing = add_box(name)
+            for each in slots:
+                thing.data.materials.append(each)
+            thing.hide_viewport = True
+            subdivision = thing.modifiers.new('subdivision', 'SUBSURF')
+            subdivision.render_levels = 1
+        bpy.ops.wm.save_as_mainfile(filepath=f"{FOLDER}/library.blend")
+        bpy.ops.wm.read_homefile(use_empty=True)
+        with bpy.data.libraries.load(f"{FOLDER}/library.blend", link=True) as (there, here):
+            here.objects = there.objects
+        for thing in here.objects:
+            bpy.context.scene.collection.objects.link(thing)
+        file = File()
+        self.assertEqual(file.materials('diffuse')[0]['extensions'], LAMBERTIAN)
+        self.assertEqual(file.materials('diffuse')[0]['pbrMetallicRoughness']['baseColorFactor'], [0.25, 0.5, 1, 1])
+        self.assertEqual(file.materials('bare') + file.materials('empty'), 2 * [DEFAULT_SURFACE])
+        for name in ('diffuse', 'bare', 'empty'):
+            primitive = file.json['meshes'][file.node(name)['mesh']]['primitives'][0]
+            self.assertEqual(file.json['accessors'][primitive['indices']]['count'], 6 * 4 * 6, name)
+
+    def test_emission_is_black_otherwise(self):
+        for name in ('lamp', 'mixed'):
+            stuff = material(name)
+            tree = stuff.node_tree
+            emission, mixed = tree.nodes.new('ShaderNodeEmission'), tree.nodes.new('ShaderNodeMixShader')
+            emission.inputs['Color'].default_value, emission.inputs['Strength'].default_value = (0.5, 0.25, 0.125, 1), 4
+            tree.links.new(emission.outputs[0], mixed.inputs[2])
+            tree.links.new(tree.nodes['Principled BSDF'].outputs[0], mixed.inputs[1])
+            tree.links.new((emission if name == 'lamp' else mixed).outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+            add_box(name, stuff=stuff)
+        file = File()
+        for name in ('lamp', 'mixed'):
+            written, = file.materials(name)
+            self.assertNear(written['emissiveFactor'], (1, 0.5, 0.25))
+            self.assertEqual(written['extensions']['KHR_materials_emissive_strength'], {'emissiveStrength': 2})
+            self.assertEqual('KHR_materials_specular' in written['extensions'], name == 'lamp')
+            self.assertEqual(written['pbrMetallicRoughness']['metallicFactor'], 0)
+        self.assertNotIn("'lamp'", file.report)
+        self.assertIn("material 'mixed': its surface is the node 'Mix Shader', which is not drawn, but 'Principled BSDF' and 'Emission' before it",
+                      file.report)
+
+    def test_alpha_of_opaque_materials_is_named(self):
+        for name, mode, alpha in (('solid', 'OPAQUE', 1.0), ('opaque', 'OPAQUE', 0.5), ('clipped', 'CLIP', 0.5)):
+            stuff = material(name, Alpha=alpha)
+            stuff.blend_method = mode
+            add_box(name, stuff=stuff)
+        report = File().report
+        self.assertIn("material 'opaque': its alpha is not drawn, as in EEVEE: its blend mode is Opaque", report)
+        self.assertNotIn("'solid'", report)
+        self.assertNotIn("'clipped'", report)
+
+    def test_other_surfaces_have_the_colour_for_viewports(self):
+        stuff = material('glossy')
+        stuff.diffuse_color = (0.25, 0.5, 1, 1)
+        tree = stuff.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeBsdfGlossy').outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+        add_box('box', stuff=stuff)
+        file = File()
+        values = file.materials('box')[0]['pbrMetallicRoughness']
+        self.assertNear(values['baseColorFactor'], (0.25, 0.5, 1, 1))
+        self.assertEqual(values['metallicFactor'], 0)
+        self.assertIn("material 'glossy': its surface is the node 'Glossy BSDF', which is not drawn, but the material's colour for viewports", file.report)
+
     def test_images_that_no_uv_set_places_are_named(self):
         for kind, projection, name in (('UV', 'FLAT', None), ('Object', 'FLAT', 'Object'), ('UV', 'BOX', 'Box')):
             stuff = material(f'{kind} {projection}')
@@ -637,6 +808,16 @@ class Materials(ExportTest):
             for color, written in zip((0.5, 0.25, 1), volume['attenuationColor']):
                 self.assertAlmostEqual(written ** (d / volume['attenuationDistance']), math.exp(-2 * (1 - color) * d), 5)
 
+    def test_attributes_of_objects_are_named(self):
+        for kind, is_named in (('GEOMETRY', False), ('OBJECT', True)):
+            stuff = material(kind)
+            tree = stuff.node_tree
+            node = tree.nodes.new('ShaderNodeAttribute')
+            node.attribute_type, node.attribute_name = kind, 'color'
+            tree.links.new(node.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+            add_box(kind, stuff=stuff).data.color_attributes.new('color', 'FLOAT_COLOR', 'POINT')
+            self.assertEqual(f"material '{kind}': 'Base Color' comes from the nodes Attribute" in File().report, is_named)
+
     def test_what_is_not_drawn_is_named(self):
         noisy, mixed, deep = material('noisy'), material('mixed'), material('deep', Subsurface=0.5)
         tree = noisy.node_tree
@@ -649,7 +830,7 @@ class Materials(ExportTest):
             add_box(stuff.name, stuff=stuff)
         report = File().report
         for text in ("material 'noisy': 'Roughness' comes from the nodes Noise Texture", "material 'noisy': its displacement",
-                     "material 'mixed': its surface is the node 'Mix Shader'", "material 'deep': 'Subsurface' is not drawn"):
+                     "material 'mixed': its surface is the node 'Mix Shader', which is not drawn, but the material's colour", "material 'deep': 'Subsurface' is not drawn"):
             self.assertIn(text, report)
         self.assertNotIn("plain", report)
 
@@ -689,6 +870,61 @@ class Options(ExportTest):
         report = File().report
         self.assertIn("scene: motion blur is drawn in frames alone: --frames A-B --shutter 0.5", report)
         self.assertIn("scene: compositing nodes are not run", report)
+
+    def test_what_hides_objects_and_changes_pictures_is_named(self):
+        render, layer = self.scene.render, bpy.context.view_layer
+        for name, option in (('held', 'holdout'), ('indirect', 'indirect_only')):
+            collection = bpy.data.collections.new(name)
+            self.scene.collection.children.link(collection)
+            add_box(name, collection=collection)
+            setattr(layer.layer_collection.children[name], option, True)
+        add_box('matte').visible_glossy = False
+        render.engine, self.scene.eevee.use_bloom = 'BLENDER_EEVEE', True
+        render.use_border = render.use_multiview = render.use_freestyle = True
+        self.scene.background_set = bpy.data.scenes.new('set')
+        layer.material_override = material('clay')
+        report = File().report
+        for text in ("object 'held': holdouts and shadow catchers are drawn", "object 'indirect': it is hidden from the camera in Blender and is drawn",
+                     "object 'matte': it is hidden from rays of the kinds glossy", "scene: the whole picture is drawn, not its render region alone",
+                     "scene: one view is drawn", "scene: lines of Freestyle", "scene: EEVEE's bloom", "scene: its background set 'set' is not written",
+                     "its material override 'clay' is not drawn"):
+            self.assertIn(text, report)
+
+    def test_simplified_scenes_are_written_as_rendered(self):
+        subdivision = add_box().modifiers.new('subdivision', 'SUBSURF')
+        subdivision.render_levels = 2
+        self.scene.render.use_simplify = True
+        self.scene.render.simplify_subdivision, self.scene.render.simplify_subdivision_render = 0, 1
+        file = File()
+        self.assertEqual(file.json['accessors'][file.json['meshes'][0]['primitives'][0]['indices']]['count'], 6 * 4 * 6)
+        self.assertEqual(self.scene.render.simplify_subdivision, 0)
+
+    def test_what_viewports_hide_is_written_as_rendered(self):
+        collections = {name: bpy.data.collections.new(name) for name in ('layer', 'collection', 'instanced')}
+        for name in ('layer', 'collection'):
+            self.scene.collection.children.link(collections[name])
+        names = ['seen', 'disabled', 'hidden', *collections]
+        for name in names:
+            thing = add_box(name, collection=collections.get(name))
+            subdivision = thing.modifiers.new('subdivision', 'SUBSURF')
+            subdivision.levels, subdivision.render_levels = 0, 1
+        instance = add('instance', None)
+        instance.instance_type, instance.instance_collection = 'COLLECTION', collections['instanced']
+        # It is hidden, and so are its particles.
+        system = bpy.data.objects['hidden'].modifiers.new('particles', 'PARTICLE_SYSTEM').particle_system.settings
+        system.type, system.count, system.render_type, system.instance_object = 'HAIR', 12, 'OBJECT', bpy.data.objects['seen']
+        bpy.data.objects['disabled'].hide_viewport = True
+        bpy.data.objects['hidden'].hide_set(True)
+        layers = bpy.context.view_layer.layer_collection.children
+        layers['layer'].hide_viewport = collections['collection'].hide_viewport = True
+        file = File()
+        self.assertEqual(file.names(), {*names, 'instance', 'hidden seen'})
+        self.assertEqual(sum(node['name'] == 'hidden seen' for node in file.json['nodes']), 12)
+        self.assertTrue(bpy.data.objects['disabled'].hide_viewport and bpy.data.objects['hidden'].hide_get())
+        self.assertTrue(layers['layer'].hide_viewport and collections['collection'].hide_viewport)
+        for name in names:
+            primitive = file.json['meshes'][file.node(name)['mesh']]['primitives'][0]
+            self.assertEqual(file.json['accessors'][primitive['indices']]['count'], 6 * 4 * 6, name)
 
 
 def write_picture_scene():

@@ -11,7 +11,7 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import cameras, closed, engine, lamps, materials, temporary, viewport, world
+from . import cameras, closed, engine, lamps, materials, objects, temporary, viewport, world
 
 bl_info = {
     "name": "Gnomon",
@@ -59,6 +59,28 @@ def add_extras(element, extras):
     """Adds to the extras of an element of the file; those of the user stay."""
     if extras:
         element.extras = {**extras, **(element.extras or {})}
+
+
+def gltf_class(name, module='gltf2_io'):
+    return getattr(importlib.import_module(f'io_scene_gltf2.io.com.{module}'), name)
+
+
+def take_specular(element):
+    """Makes a material of the file Lambertian, unless it is a metal."""
+    name = 'KHR_materials_specular'
+    extension = gltf_class('Extension', 'gltf2_io_extensions')(name, {'specularFactor': 0.0}, False)
+    element.extensions = {**(element.extensions or {}), name: extension}
+
+
+def write_plain(element, values):
+    """Writes materials.plain_values into a material of the file."""
+    element.pbr_metallic_roughness = gltf_class('MaterialPBRMetallicRoughness').from_dict({
+        'baseColorFactor': [*values['base_color'], values.get('alpha', 1.0)], 'metallicFactor': 0.0,
+        'roughnessFactor': materials.ROUGHNESS})
+    if 'alpha' in values:
+        element.alpha_mode, element.alpha_cutoff = 'MASK', 0.5
+    if 'specular' in values:
+        take_specular(element)
 
 
 def rendered_objects(view_layer):
@@ -116,6 +138,10 @@ class Export:
         self.show_as_rendered()
         self.find_instances()
         self.fill_slots()
+        # Remarks of the materials with a Diffuse BSDF, by name.
+        self.diffuse = {}
+        self.replace_diffuse()
+        self.default_surface = None
         self.choose_colors()
         if bpy.app.version < (3, 5):
             self.read_colors_by_corner()
@@ -159,8 +185,12 @@ class Export:
 
     def show_as_rendered(self):
         """The exporter writes what a viewport shows."""
-        change = self.temporary.set
-        for thing in self.scene.objects:
+        change, render = self.temporary.set, self.scene.render
+        change(render, 'simplify_subdivision', render.simplify_subdivision_render)
+        change(render, 'simplify_child_particles', render.simplify_child_particles_render)
+        self.show_hidden()
+        # Also those of collections that have instances only.
+        for thing in bpy.data.objects:
             for modifier in thing.modifiers:
                 change(modifier, 'show_viewport', modifier.show_render)
                 if modifier.type in ('SUBSURF', 'MULTIRES'):
@@ -174,6 +204,23 @@ class Export:
                     change(data, f'resolution_{axis}', getattr(data, f'render_resolution_{axis}') or getattr(data, f'resolution_{axis}'))
             if thing.type == 'META':
                 change(data, 'resolution', data.render_resolution)
+
+    def show_hidden(self):
+        """Shows what viewports hide and renders do not: Blender evaluates neither its modifiers nor its instances otherwise."""
+        def walk(layer):
+            if not layer.exclude:
+                self.temporary.set(layer, 'hide_viewport', False)
+                for child in layer.children:
+                    walk(child)
+
+        for kind in (bpy.data.collections, bpy.data.objects):
+            for each in kind:
+                if not each.hide_render:
+                    self.temporary.set(each, 'hide_viewport', False)
+        walk(bpy.context.view_layer.layer_collection)
+        for thing in self.scene.objects:
+            if thing.name_full in self.rendered and thing.hide_get():
+                self.temporary.show(thing)
 
     def find_instances(self):
         """Instances of particles and geometry nodes, and metaballs, all of which the exporter leaves out."""
@@ -269,6 +316,14 @@ class Export:
         for mesh in meshes:
             self.temporary.fill_slots(mesh, self.nothing)
 
+    def replace_diffuse(self):
+        """The exporter reads Principled BSDFs alone."""
+        for material in bpy.data.materials:
+            surface = materials.surface_of(material)
+            if surface is not None and surface.type == 'BSDF_DIFFUSE':
+                self.diffuse[material.name_full] = materials.remarks_of(material)
+                self.temporary.replace_diffuse(material)
+
     def choose_colors(self):
         """The exporter writes the colours for renders, whichever a material reads."""
         for mesh in (each for each in bpy.data.meshes if each.library is None and each.color_attributes):
@@ -301,6 +356,7 @@ class Export:
             report.add('scene', f"motion blur is drawn in frames alone: --frames A-B --shutter {scene.render.motion_blur_shutter:.6g}")
         if scene.use_nodes:
             report.add('scene', "compositing nodes are not run")
+        self.report_picture()
         animated = [scene.world, *(thing.data for thing in scene.objects if thing.type in ('LIGHT', 'CAMERA'))]
         for thing in scene.objects:
             if thing.name_full not in self.rendered:
@@ -312,15 +368,33 @@ class Export:
                 for system in thing.particle_systems:
                     if system.settings.type == 'HAIR' and system.settings.render_type == 'PATH':
                         report.add(what, f"the hair '{system.name}' is not written; make a mesh of it")
-                if not thing.visible_camera:
-                    report.add(what, "it is hidden from the camera in Blender and is drawn")
-                if thing.is_holdout or thing.is_shadow_catcher:
-                    report.add(what, "holdouts and shadow catchers are drawn as surfaces")
+            if thing.type in (*WRITTEN_SURFACES, 'META'):
+                report.add_all(what, objects.remarks_of(thing, bpy.context.view_layer))
             animated += [slot.material for slot in thing.material_slots if slot.material]
         for data in animated:
             if data is not None and any(each is not None and each.animation_data and each.animation_data.action
                                         for each in (data, data.node_tree if hasattr(data, 'node_tree') else None)):
                 report.add(f"{data.bl_rna.name.lower()} '{data.name}'", "its animation is not written, only that of objects, bones and shape keys")
+
+    def report_picture(self):
+        """Names the options of pictures that are not drawn, and takes square pixels."""
+        scene, render, layer, report = self.scene, self.scene.render, bpy.context.view_layer, self.report
+        if render.pixel_aspect_x != render.pixel_aspect_y:
+            report.add('scene', f"its pixels of {render.pixel_aspect_x:.6g} to {render.pixel_aspect_y:.6g} are drawn square")
+            self.temporary.set(render, 'pixel_aspect_x', 1.0)
+            self.temporary.set(render, 'pixel_aspect_y', 1.0)
+        if render.use_border:
+            report.add('scene', "the whole picture is drawn, not its render region alone")
+        if render.use_multiview:
+            report.add('scene', "one view is drawn, not those of stereoscopy")
+        if render.use_freestyle:
+            report.add('scene', "lines of Freestyle are not drawn")
+        if render.engine == 'BLENDER_EEVEE' and getattr(scene.eevee, 'use_bloom', False):
+            report.add('scene', "EEVEE's bloom is not drawn")
+        if scene.background_set is not None:
+            report.add('scene', f"its background set '{scene.background_set.name}' is not written")
+        if layer.material_override is not None:
+            report.add(f"view layer '{layer.name}'", f"its material override '{layer.material_override.name}' is not drawn")
 
     def tag_tree(self, tree):
         """Leaves out what a render does not show. What only carries others stays."""
@@ -350,6 +424,9 @@ class Export:
             found, remarks = cameras.extras_of(thing, self.scene)
             self.report.add_all(f"camera '{thing.name}'", remarks)
             extras = {**found, **extras}
+            if node.camera is not None and node.camera.orthographic is not None:
+                # The exporter takes the scale for that of the longer side, whichever way the sensor fits.
+                node.camera.orthographic.xmag, node.camera.orthographic.ymag = cameras.half_size_of(thing.data, self.scene)
         elif not thing.visible_shadow:
             extras.setdefault('gnomon_casts_shadow', False)
         add_extras(node, extras)
@@ -373,8 +450,20 @@ class Export:
         return extras
 
     def write_material(self, element, material):
-        self.report.add_all(f"material '{material.name}'", materials.remarks_of(material))
+        diffuse_remarks = self.diffuse.get(material.name_full)
+        remarks = materials.remarks_of(material) if diffuse_remarks is None else diffuse_remarks
+        self.report.add_all(f"material '{material.name}'", remarks)
         add_extras(element, own_extras(material))
+        if diffuse_remarks is not None:
+            take_specular(element)
+            return
+        values, is_unlit = materials.plain_values(material), 'KHR_materials_unlit' in (element.extensions or {})
+        if materials.emission_of(material) and not materials.principled_of(material) and not is_unlit:
+            # The exporter writes a black metal, which reflects at its edges.
+            write_plain(element, materials.BLACK)
+        # It reads some groups of nodes.
+        elif values is not None and not is_unlit and not any(vars(element.pbr_metallic_roughness).values()):
+            write_plain(element, values)
 
     def write_mesh(self, element, mesh, slots):
         by_name = {material.name: material for material in slots if material is not None}
@@ -384,6 +473,8 @@ class Export:
             if self.nothing is not None and written is not None and written.name == self.nothing.name:
                 primitive.material = written = None
             material = by_name.get(getattr(written, 'name', None))
+            if written is None and self.settings['gltf_materials'] == 'EXPORT':
+                primitive.material = self.default_material()
             if not materials.uses_color_attribute(material):
                 # glTF multiplies these by the base colour of any material.
                 for key in [key for key in primitive.attributes if key.startswith('COLOR_')]:
@@ -397,6 +488,13 @@ class Export:
                 self.report.add(f"mesh '{mesh.name}'", f"its part of '{material.name}' is a plane; it is drawn as a thin wall")
                 continue
             primitive.material = self.with_volume(written, material, thickness)
+
+    def default_material(self):
+        """The element of the file for faces without a material."""
+        if self.default_surface is None:
+            self.default_surface = gltf_class('Material').from_dict({'name': materials.DEFAULT_NAME, 'doubleSided': True})
+            write_plain(self.default_surface, {'base_color': materials.DEFAULT_COLOR, 'specular': 0.0})
+        return self.default_surface
 
     @staticmethod
     def thickness(mesh, slot_indices):

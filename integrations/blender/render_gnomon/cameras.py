@@ -4,11 +4,22 @@
 from mathutils import Vector
 
 
+def frame_of(camera, scene):
+    """(low, high): the corners of the frame, as the sensor fits it into the scene's picture. Of orthographic cameras, m."""
+    corners = camera.view_frame(scene=scene)
+    return tuple([choose(corner[axis] for corner in corners) for axis in (0, 1)] for choose in (min, max))
+
+
 def shift_of(camera, scene):
     """(x, y): the shift of the frame in its widths and heights. Blender's is in its longer side, or as the sensor fits."""
-    corners = camera.view_frame(scene=scene)
-    low, high = ([choose(corner[axis] for corner in corners) for axis in (0, 1)] for choose in (min, max))
+    low, high = frame_of(camera, scene)
     return tuple((high[axis] + low[axis]) / 2 / (high[axis] - low[axis]) for axis in (0, 1))
+
+
+def half_size_of(camera, scene):
+    """Half the width and height of what an orthographic camera sees, m."""
+    low, high = frame_of(camera, scene)
+    return tuple((high[axis] - low[axis]) / 2 for axis in (0, 1))
 
 
 def focus_of(thing):

@@ -6,7 +6,7 @@ import dataclasses
 import numpy
 from mathutils import Matrix
 
-from . import closed, lamps, materials
+from . import closed, lamps, materials, objects
 from .mirror import Content, Node, Part
 
 FILE_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
@@ -14,8 +14,16 @@ WITHOUT_SURFACE = {'EMPTY', 'CAMERA', 'ARMATURE', 'LATTICE', 'SPEAKER'}
 WITH_SURFACE = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}
 # Reflectance of a dielectric at normal incidence, of which Gnomon's specular colour is a factor.
 DIELECTRIC_F0 = 0.04
-# A material without nodes has these values. Gnomon's defaults are those of glTF, a rough metal.
-MATERIAL = {'metallic': 0.0, 'roughness': 0.5}
+# Gnomon's defaults are those of glTF, a rough metal.
+MATERIAL = {'metallic': 0.0, 'roughness': materials.ROUGHNESS}
+# The textures of sockets, by the type of their node.
+TEXTURES = {
+    'BSDF_PRINCIPLED': {'Base Color': 'base_color_texture', 'Metallic': 'metallic_roughness_texture', 'Roughness': 'metallic_roughness_texture',
+                        'Emission': 'emissive_texture', 'Emission Color': 'emissive_texture', 'Normal': 'normal_texture'},
+    'BSDF_DIFFUSE': {'Color': 'base_color_texture', 'Normal': 'normal_texture'},
+    'EMISSION': {'Color': 'emissive_texture'}, 'BACKGROUND': {'Color': 'emissive_texture'}}
+# The key of Content.materials of faces without a material.
+DEFAULT_SURFACE = materials.DEFAULT_NAME, None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,7 +92,7 @@ def parts_of(mesh, slots):
         arrays['uvs'] = numpy.empty((0, 2), numpy.float32) if layer is None else placed(numbers(layer.data, 'uv', 2)[corners], placing)
         arrays['colors'] = colors_of(mesh, colors, corners, vertices)
         thickness = closed.thickness(arrays['positions'], arrays['triangles']) if is_glass else 0.0
-        parts.append(Part(arrays, name and (name, round(thickness, 6))))
+        parts.append(Part(arrays, (name, round(thickness, 6)) if name else DEFAULT_SURFACE))
     return parts
 
 
@@ -180,6 +188,7 @@ class Collector:
 
     def collected(self, depsgraph, local):
         self.forget(depsgraph)
+        self.view_layer = depsgraph.view_layer
         self.remarks = []
         self.materials = {}
         self.thicknesses = {}
@@ -221,6 +230,8 @@ class Collector:
             if mesh is not None:
                 content.meshes[mesh] = self.meshes[mesh]
                 self.add_materials(self.meshes[mesh], content)
+                for remark in objects.remarks_of(thing.original, self.view_layer):
+                    self.remark(f"object '{thing.name}': {remark}")
             return Thing(mesh=mesh, casts_shadow=thing.visible_shadow)
         if thing.type not in WITHOUT_SURFACE:
             self.remark(f"object '{thing.name}': objects of the kind {thing.type} are not drawn")
@@ -288,27 +299,45 @@ class Collector:
 
     def add_materials(self, parts, content):
         for part in parts:
-            if part.material is not None and part.material not in content.materials:
+            if part.material == DEFAULT_SURFACE:
+                content.materials[part.material] = {
+                    **MATERIAL, 'name': materials.DEFAULT_NAME, 'base_color': materials.DEFAULT_COLOR, 'specular': 0.0,
+                    'is_double_sided': True}
+            elif part.material not in content.materials:
                 name, thickness = part.material
                 content.materials[part.material] = {**self.materials[name], 'thickness': self.thicknesses.get(name, thickness)}
 
     def properties_of(self, material, content):
         values = {**MATERIAL, 'name': material.name, 'is_double_sided': not material.use_backface_culling}
-        output = materials.output_of(material.node_tree) if material.use_nodes and material.node_tree else None
-        if not material.use_nodes:
+        if not material.use_nodes or material.node_tree is None:
             return {**values, 'base_color': tuple(material.diffuse_color[:3]), 'metallic': material.metallic, 'roughness': material.roughness}
-        node = materials.source_of(output.inputs['Surface']) if output else None
-        if node is None:
-            return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
-        if node.type in ('EMISSION', 'BACKGROUND'):
-            color = node.inputs['Color'].default_value[:3]
-            strength = node.inputs['Strength'].default_value
-            return {**values, 'base_color': (0.0, 0.0, 0.0), 'specular': 0.0, 'emissive': tuple(max(c * strength, 0.0) for c in color)}
+        plain = materials.plain_values(material)
+        if plain is not None:
+            return {**values, **plain, **({'alpha_mode': 'MASK'} if 'alpha' in plain else {})}
+        node, principled, emission = materials.surface_of(material), materials.principled_of(material), materials.emission_of(material)
         if node.type == 'BSDF_DIFFUSE':
-            return {**values, 'specular': 0.0, **self.color_of(node.inputs['Color'], content)}
-        if node.type != 'BSDF_PRINCIPLED':
-            return {**values, 'base_color': tuple(material.diffuse_color[:3])}
-        return {**values, **self.principled(node, material, content)}
+            values.update({'specular': 0.0, **self.color_of(node.inputs['Color'], content), **self.normal_of(node.inputs['Normal'], content)})
+            self.remark_sockets(node, material, values)
+            return values
+        values.update(self.principled(principled, material, content) if principled else materials.BLACK)
+        if emission:
+            values.update(self.emission_of(emission.inputs['Color'], emission.inputs['Strength'].default_value, content))
+            self.remark_sockets(emission, material, values)
+        return values
+
+    def emission_of(self, socket, strength, content):
+        image = image_of(socket)
+        if image is None:
+            return {'emissive': tuple(max(c * strength, 0.0) for c in socket.default_value[:3])}
+        emissive = {'emissive': 3 * (max(strength, 0.0),)}
+        return {**emissive, 'emissive_texture': self.texture([(image, None)], content)} if strength > 0 else emissive
+
+    def normal_of(self, socket, content):
+        node = materials.source_of(socket)
+        image = image_of(node.inputs['Color']) if node is not None and node.type == 'NORMAL_MAP' else None
+        if image is None:
+            return {}
+        return {'normal_texture': self.texture([(image, None)], content), 'normal_scale': node.inputs['Strength'].default_value}
 
     def color_of(self, socket, content):
         image = image_of(socket)
@@ -343,16 +372,8 @@ class Collector:
         coat = clamped(number(0.0, 'Clearcoat', 'Coat Weight'))
         if coat > 0:
             values.update(coat=coat, coat_roughness=clamped(number(0.03, 'Clearcoat Roughness', 'Coat Roughness')))
-        emission = socket('Emission', 'Emission Color')
-        strength = max(number(1.0, 'Emission Strength'), 0.0)
-        image = image_of(emission)
-        values['emissive'] = 3 * (strength,) if image else tuple(max(c, 0.0) * strength for c in emission.default_value[:3])
-        if image and strength > 0:
-            values['emissive_texture'] = self.texture([(image, None)], content)
-        normal = materials.source_of(node.inputs['Normal'])
-        if normal is not None and normal.type == 'NORMAL_MAP' and image_of(normal.inputs['Color']):
-            values['normal_texture'] = self.texture([(image_of(normal.inputs['Color']), None)], content)
-            values['normal_scale'] = normal.inputs['Strength'].default_value
+        values.update(self.emission_of(socket('Emission', 'Emission Color'), number(1.0, 'Emission Strength'), content))
+        values.update(self.normal_of(node.inputs['Normal'], content))
         self.remark_sockets(node, material, values)
         method = getattr(material, 'blend_method', 'OPAQUE')
         if method != 'OPAQUE':
@@ -362,14 +383,13 @@ class Collector:
         return values
 
     def remark_sockets(self, node, material, values):
-        """Names the linked sockets of a Principled BSDF that are not drawn, unless materials.remarks_of names them."""
-        drawn = {'Base Color': 'base_color_texture', 'Metallic': 'metallic_roughness_texture', 'Roughness': 'metallic_roughness_texture',
-                 'Emission': 'emissive_texture', 'Emission Color': 'emissive_texture', 'Normal': 'normal_texture'}
+        """Names the linked sockets of a surface that are not drawn, unless materials.remarks_of names them."""
+        drawn = TEXTURES[node.type]
         for socket in (each for each in node.inputs if each.is_linked):
             nodes = materials.upstream(socket, [])
-            if any(each.type not in materials.KNOWN_NODES for each in nodes):
+            if not all(materials.is_known(each) for each in nodes):
                 continue
-            if socket.name == 'Base Color' and materials.color_name(socket) is not None:
+            if drawn.get(socket.name) == 'base_color_texture' and materials.color_name(socket) is not None:
                 continue
             is_alpha = socket.name == 'Alpha' and image_of(socket) is not None and image_of(socket) == image_of(node.inputs['Base Color'])
             if not is_alpha and (values.get(drawn.get(socket.name)) is None or (socket.name != 'Normal' and image_of(socket) is None)):

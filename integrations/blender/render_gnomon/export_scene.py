@@ -34,8 +34,8 @@ if has_picture:
     _, remarks = world.extras_of(scene.world, picture, scene.gnomon_export.world_width, True)
     numpy.save(f"{folder}/world.npy", world.radiance_of_picture(picture))
     scene['gnomon_world'] = [0.0, 0.0, 0.0]
-# Blender composites the picture itself.
-scene.use_nodes = False
+# Blender composites the picture itself, and the engine keeps the render region.
+scene.use_nodes = scene.render.use_border = False
 bpy.ops.export_scene.gltf(filepath=f"{folder}/scene.glb", use_active_scene=True, export_current_frame=True, export_animations=False)
 # The last line is a command, and the view is that of Blender.
 lines = bpy.context.window_manager.gnomon_report.splitlines()[:-1]

@@ -6,8 +6,21 @@ import math
 # Nodes of which the exporter of glTF makes something where they lead to a socket of the Principled BSDF.
 KNOWN_NODES = {'TEX_IMAGE', 'NORMAL_MAP', 'SEPARATE_COLOR', 'SEPRGB', 'MAPPING', 'UVMAP', 'TEX_COORD', 'VERTEX_COLOR', 'MIX',
                'MIX_RGB', 'MATH', 'REROUTE', 'RGB', 'VALUE', 'ATTRIBUTE', 'GROUP_INPUT'}
-# Sockets that are not in glTF, with the value at which they have no effect. Names of 3.4, and of 4.0 and later.
-IDLE_VALUES = {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}
+# Surfaces that are drawn, with their sockets that are not in glTF and the values at which these have no effect. Names of 3.4, and of 4.0 and
+# later.
+IDLE_VALUES = {'BSDF_PRINCIPLED': {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}, 'BSDF_DIFFUSE': {'Roughness': 0.0},
+               'EMISSION': {}, 'BACKGROUND': {}}
+BLACK = {'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
+# What Cycles draws where a face has no material: a Lambertian surface, with its name in Cryptomattes.
+DEFAULT_NAME = 'default_surface'
+DEFAULT_COLOR = (0.8, 0.8, 0.8)
+# Of surfaces that have no roughness of their own. A material of Blender has it at first.
+ROUGHNESS = 0.5
+
+
+def is_known(node):
+    """Whether a node is of KNOWN_NODES and does not read an attribute of an object."""
+    return node.type in KNOWN_NODES and not (node.type == 'ATTRIBUTE' and node.attribute_type != 'GEOMETRY')
 
 
 def output_of(tree):
@@ -46,6 +59,44 @@ def surface_nodes(material):
     return upstream(output.inputs['Surface'], []) if output else []
 
 
+def surface_of(material):
+    """The node at the surface of a material; None if there is none, or if the material has no nodes."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    return source_of(output.inputs['Surface']) if output else None
+
+
+def is_volume_alone(material):
+    """Whether a material has a volume and no surface, so that light passes it."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    return output is not None and source_of(output.inputs['Surface']) is None and source_of(output.inputs['Volume']) is not None
+
+
+def first_of(material, kind):
+    """The first node of a kind that leads to the surface of a material, which glTF's exporter reads; None if there is none."""
+    above = surface_nodes(material)
+    return next((node for node in material.node_tree.nodes if node.type == kind and node in above), None) if above else None
+
+
+def principled_of(material):
+    return first_of(material, 'BSDF_PRINCIPLED')
+
+
+def emission_of(material):
+    return first_of(material, 'EMISSION') or first_of(material, 'BACKGROUND')
+
+
+def plain_values(material):
+    """Properties of Gnomon of a material with nodes that are drawn neither from a file nor in the viewport; None for others."""
+    if not material.use_nodes or material.node_tree is None:
+        return None
+    surface = surface_of(material)
+    if surface is None:
+        return {**BLACK, 'alpha': 0.0} if is_volume_alone(material) else BLACK
+    if surface.type == 'BSDF_DIFFUSE' or principled_of(material) or emission_of(material):
+        return None
+    return {'base_color': tuple(material.diffuse_color[:3])}
+
+
 def placing_remarks(material):
     """Sentences about images that are not placed by a uv set."""
     remarks = []
@@ -69,23 +120,27 @@ def remarks_of(material):
     remarks = placing_remarks(material)
     surface = source_of(output.inputs['Surface'])
     if surface is None:
-        if not output.inputs['Volume'].is_linked:
-            remarks.append("its output has no surface")
-    elif surface.type == 'BSDF_PRINCIPLED':
+        remarks.append("it has a volume and no surface, and is not drawn" if is_volume_alone(material) else
+                       "its output has no surface, so that Blender draws it black")
+    elif surface.type in IDLE_VALUES:
         for socket in surface.inputs:
-            unknown = sorted({node.name for node in upstream(socket, []) if node.type not in KNOWN_NODES})
+            unknown = sorted({node.name for node in upstream(socket, []) if not is_known(node)})
             if unknown:
                 remarks.append(f"'{socket.name}' comes from the nodes {', '.join(unknown)}, which are not drawn; bake them to a picture")
-            idle = IDLE_VALUES.get(socket.name)
+            is_opaque = getattr(material, 'blend_method', None) == 'OPAQUE'
+            if socket.name == 'Alpha' and is_opaque and (socket.is_linked or socket.default_value != 1.0):
+                remarks.append("its alpha is not drawn, as in EEVEE: its blend mode is Opaque")
+            idle = IDLE_VALUES[surface.type].get(socket.name)
             if idle is not None and (socket.is_linked or socket.default_value != idle):
                 remarks.append(f"'{socket.name}' is not drawn")
-    # A file has these as unlit materials.
-    elif surface.type not in ('EMISSION', 'BACKGROUND'):
-        remarks.append(f"its surface is the node '{surface.name}', of which glTF's exporter writes a part at most; use a Principled BSDF")
+    else:
+        parts = [f"'{node.name}'" for node in (principled_of(material), emission_of(material)) if node]
+        remarks.append(f"its surface is the node '{surface.name}', which is not drawn, but " +
+                       (f"{' and '.join(parts)} before it" if parts else "the material's colour for viewports") + "; use a Principled BSDF")
     if source_of(output.inputs['Displacement']) is not None:
         remarks.append("its displacement is not drawn")
     volume = source_of(output.inputs['Volume'])
-    if volume is not None and volume.type != 'VOLUME_ABSORPTION':
+    if volume is not None and surface is not None and volume.type != 'VOLUME_ABSORPTION':
         remarks.append(f"its volume, the node '{volume.name}', is not drawn")
     return remarks
 
@@ -109,8 +164,7 @@ def color_name(socket):
 
 def base_color_name(material):
     """The same of the base colour of a material."""
-    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
-    surface = source_of(output.inputs['Surface']) if output else None
+    surface = surface_of(material)
     name = {'BSDF_PRINCIPLED': 'Base Color', 'BSDF_DIFFUSE': 'Color'}.get(surface.type) if surface else None
     return color_name(surface.inputs[name]) if name else None
 

@@ -3,6 +3,8 @@
 
 import bpy
 
+from . import materials
+
 # Changes that have not ended.
 unended = []
 
@@ -30,6 +32,12 @@ class Temporary:
         owner[key] = value
         self.undo.append(lambda: owner.__setitem__(key, old))
 
+    def show(self, thing):
+        """Shows an object that is hidden in the view layer."""
+        layer = bpy.context.view_layer
+        thing.hide_set(False, view_layer=layer)
+        self.undo.append(lambda: thing.hide_set(True, view_layer=layer))
+
     def add_material(self):
         material = bpy.data.materials.new('None')
         self.undo.append(lambda: bpy.data.materials.remove(material))
@@ -53,6 +61,27 @@ class Temporary:
             if each is None:
                 put(i, material)
                 self.undo.append(lambda i=i: put(i, None))
+
+    def replace_diffuse(self, material):
+        """Puts a Principled BSDF at the surface of a material in the place of its Diffuse BSDF."""
+        tree = material.node_tree
+        surface = materials.output_of(tree).inputs['Surface']
+        diffuse = materials.source_of(surface)
+        node = tree.nodes.new('ShaderNodeBsdfPrincipled')
+        for socket, name in ((diffuse.inputs['Color'], 'Base Color'), (diffuse.inputs['Normal'], 'Normal')):
+            link = materials.link_of(socket)
+            if link is not None:
+                tree.links.new(link.from_socket, node.inputs[name])
+            elif name == 'Base Color':
+                node.inputs[name].default_value = socket.default_value
+        before = surface.links[0].from_socket
+        tree.links.new(node.outputs[0], surface)
+
+        def put_back():
+            tree.nodes.remove(node)
+            tree.links.new(before, surface)
+
+        self.undo.append(put_back)
 
     def end(self):
         while self.undo:

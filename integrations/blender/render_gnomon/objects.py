@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: MIT
+"""What of Blender's objects is not drawn as a render draws it."""
+
+
+def remarks_of(thing, view_layer):
+    """Sentences about an object with a surface."""
+    remarks = []
+    if thing.is_holdout or thing.is_shadow_catcher or thing.holdout_get(view_layer=view_layer):
+        remarks.append("holdouts and shadow catchers are drawn as surfaces")
+    if not thing.visible_camera or thing.indirect_only_get(view_layer=view_layer):
+        remarks.append("it is hidden from the camera in Blender and is drawn")
+    hidden = [kind for kind in ('diffuse', 'glossy', 'transmission') if not getattr(thing, f'visible_{kind}')]
+    if hidden:
+        remarks.append(f"it is hidden from rays of the kinds {', '.join(hidden)}, which is not drawn")
+    return remarks
