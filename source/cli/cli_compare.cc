@@ -79,6 +79,11 @@ Status compare(const CompareOptions &options)
   keep_text_from(roles);
   const Picture picture = read_picture(options.picture);
   const Picture reference = read_picture(options.reference);
+  for (const auto &[path, of] : {std::pair(&options.picture, &picture), std::pair(&options.reference, &reference)}) {
+    for (const std::string &warning : of->warnings) {
+      print_message("gnomon: warning: {}: {}\n", *path, warning);
+    }
+  }
   if (picture.size_px != reference.size_px) {
     throw std::runtime_error(fmt::format("{}: is {}x{} pixels, and {} is {}x{}", options.picture, picture.size_px.x,
                                          picture.size_px.y, options.reference, reference.size_px.x,

@@ -86,6 +86,9 @@ static Picture read_radiance_picture(const Bytes &file)
   image::RadianceDecoder decoder(file);
   check_edges(decoder.width(), decoder.height());
   Picture picture{glm::ivec2(decoder.width(), decoder.height()), {}};
+  if (decoder.has_other_primaries()) {
+    picture.warnings.emplace_back(primaries_warning);
+  }
   const auto width = std::size_t(picture.size_px.x);
   picture.pixels.reserve(width * std::size_t(picture.size_px.y));
   const std::vector<float> values = decoder.read_rgb();

@@ -49,13 +49,18 @@ struct Picture {
   glm::ivec2 size_px{0};
   /** Scene-linear red, green, blue and 1, rows from the bottom. */
   std::vector<glm::vec4> pixels;
+  /** The file says that its pixels are the six faces of a cube around the viewer. */
+  bool is_cube_map = false;
+  /** What the reader did not do, without the name of the file. */
+  std::vector<std::string> warnings{};
 };
 
 /**
  * Reads R, G and B, or Y as grey, of the layer \a layer of an EXR file; empty: the one without a name, or the only one.
  * The picture of an EXR file is that of its display window, black where it has no pixels. The format is that of the
  * first bytes: EXR, PNG, JPEG, WebP or Radiance HDR, or another one that OpenImageIO reads. Integer values are decoded
- * by the sRGB curve. Those of a PNG with alpha are then multiplied by it, so that transparent pixels are black.
+ * by the sRGB curve. Those of a PNG with alpha are then multiplied by it, so that transparent pixels are black. The
+ * primaries are those of Rec. 709; for an EXR or HDR file that states others, there is a warning.
  * \throws std::runtime_error naming \a path if it cannot be read, is cut off, or has no such channels or layer; the
  * message lists those that it has.
  */

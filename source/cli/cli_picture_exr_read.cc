@@ -3,6 +3,8 @@
 #include "internal/cli_exr_file.hh"
 #include "internal/cli_picture_formats.hh"
 
+#include "image_radiance.hh"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glm/vec3.hpp>
@@ -14,6 +16,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfTestFile.h>
 
 #include <algorithm>
@@ -41,8 +44,8 @@ struct ExrLayer {
   std::string name;
   /** Full names of red, green and blue, or three times that of luminance. */
   std::array<std::string, 3> channels;
-  /** Luminance with chroma (RY and BY). */
-  bool has_chroma = false;
+  /** Full names of RY and BY beside luminance; empty: there are none. */
+  std::vector<std::string> chroma;
 };
 
 /** The layers of a part that are pictures, by name. */
@@ -68,7 +71,9 @@ std::vector<ExrLayer> layers_of(const Imf::Header &header, int part, bool is_onl
     // Not the Y of a vector X, Y and Z.
     else if (has("Y") && !has("X")) {
       layer.channels.fill(channels.at("Y"));
-      layer.has_chroma = has("RY") && has("BY");
+      if (has("RY") && has("BY")) {
+        layer.chroma = {channels.at("RY"), channels.at("BY")};
+      }
     }
     else {
       continue;
@@ -189,6 +194,34 @@ Picture read_channels(Imf::MultiPartInputFile &file, const ExrLayer &layer)
   });
 }
 
+/** \throws std::runtime_error if OpenEXR does not compute colours of \a layer */
+void check_chroma(const Imf::ChannelList &channels, const ExrLayer &layer)
+{
+  for (const std::string &name : layer.chroma) {
+    const Imf::Channel &chroma = *channels.findChannel(name);
+    if (chroma.xSampling != 2 || chroma.ySampling != 2) {
+      throw std::runtime_error(
+          fmt::format("has luminance and chroma (Y, RY and BY) whose channel {} has one pixel for "
+                      "{}x{} of the picture; only chroma with one for 2x2 is read",
+                      name, chroma.xSampling, chroma.ySampling));
+    }
+  }
+}
+
+/** Says what the colours of \a picture are, and what its pixels. */
+void add_facts(const Imf::Header &header, const ExrLayer &layer, Picture &picture)
+{
+  picture.is_cube_map = Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE;
+  const bool is_grey = layer.chroma.empty() && layer.channels[0] == layer.channels[1];
+  if (!is_grey && Imf::hasChromaticities(header)) {
+    const Imf::Chromaticities &of = Imf::chromaticities(header);
+    if (!image::is_rec709({double(of.red.x), double(of.red.y), double(of.green.x), double(of.green.y),
+                           double(of.blue.x), double(of.blue.y), double(of.white.x), double(of.white.y)})) {
+      picture.warnings.emplace_back(primaries_warning);
+    }
+  }
+}
+
 /** Colours of luminance and chroma, which OpenEXR computes as halves. */
 Picture read_chroma(const fs::path &path, const ExrLayer &layer)
 {
@@ -243,16 +276,18 @@ std::optional<Picture> read_exr_picture(const fs::path &path, const std::string 
   }
   const ExrLayer layer = chosen(layers, layer_label);
   input.check_memory(layer.part);
-  if (layer.has_chroma) {
+  if (!layer.chroma.empty()) {
     // OpenEXR computes colours of files of one part only.
     if (file.parts() > 1) {
       throw std::runtime_error(fmt::format(
           "has luminance and chroma (Y, RY and BY) in '{}', one of several parts; they are read from files of one part",
           layer.label));
     }
-    return read_chroma(path, layer);
+    check_chroma(file.header(layer.part).channels(), layer);
   }
-  return read_channels(file, layer);
+  Picture picture = layer.chroma.empty() ? read_channels(file, layer) : read_chroma(path, layer);
+  add_facts(file.header(layer.part), layer, picture);
+  return picture;
 }
 
 }  // namespace gnomon::cli

@@ -115,6 +115,14 @@ std::string left_out_text(std::string_view target, const std::vector<std::string
                      fmt::join(rules, ", "));
 }
 
+/** A line of text for people. Names of files and programs may have control characters, which terminals obey. */
+std::string line_of(std::string text)
+{
+  std::ranges::replace_if(
+      text, [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; }, '?');
+  return text + '\n';
+}
+
 }  // namespace
 
 std::string to_text(const ShaderReport &report)
@@ -123,8 +131,9 @@ std::string to_text(const ShaderReport &report)
   std::string text;
   for (const Group &group : groups) {
     const shader_check::CheckMessage &m = *group.first;
-    text +=
-        fmt::format("{}:{}: {}: {} [{}] ({})\n", m.file, m.line, to_string(m.severity), m.text, m.rule, where(group));
+    const std::string line = m.line > 0 ? fmt::format(":{}", m.line) : "";
+    text += line_of(
+        fmt::format("{}{}: {}: {} [{}] ({})", m.file, line, to_string(m.severity), m.text, m.rule, where(group)));
   }
   std::set<std::string> targets;
   for (const shader_check::CheckTarget target : report.targets) {
@@ -137,12 +146,12 @@ std::string to_text(const ShaderReport &report)
     const auto is_chosen = [&](const ShaderReport::Choice &choice) { return choice.target == target.target; };
     const auto first = std::ranges::find_if(report.choices, is_chosen);
     if (first != report.choices.end()) {
-      text += fmt::format("{}: from the files of {} programs; {}: {}\n", target.text,
-                          std::ranges::count_if(report.choices, is_chosen), first->program, first->reason);
+      text += line_of(fmt::format("{}: from the files of {} programs; {}: {}", target.text,
+                                  std::ranges::count_if(report.choices, is_chosen), first->program, first->reason));
     }
   }
   for (const auto &[target, rules] : left_out(report)) {
-    text += left_out_text(target, rules) + "\n";
+    text += line_of(left_out_text(target, rules));
   }
   return text;
 }
@@ -157,9 +166,14 @@ std::string to_json(const ShaderReport &report)
       places.push_back({{"shader", m->shader}, {"variant", m->variant}, {"target", to_string(m->target)}});
     }
     const shader_check::CheckMessage &m = *group.first;
-    json message = {
-        {"severity", to_string(m.severity)}, {"file", m.file}, {"line", m.line}, {"text", m.text}, {"rule", m.rule},
-        {"where", std::move(places)}};
+    json message = {{"severity", to_string(m.severity)},
+                    {"file", m.file},
+                    {"text", m.text},
+                    {"rule", m.rule},
+                    {"where", std::move(places)}};
+    if (m.line > 0) {
+      message["line"] = m.line;
+    }
     if (m.column > 0) {
       message["column"] = m.column;
     }
@@ -192,16 +206,17 @@ std::string to_sarif(const ShaderReport &report)
   json results = json::array();
   for (const Group &group : groups_of(report)) {
     const shader_check::CheckMessage &m = *group.first;
-    json region = {{"startLine", m.line}};
-    if (m.column > 0) {
-      region["startColumn"] = m.column;
+    json place = {{"artifactLocation", {{"uri", uri(m.file)}}}};
+    if (m.line > 0) {
+      place["region"]["startLine"] = m.line;
     }
-    const json location = {
-        {"physicalLocation", {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", std::move(region)}}}};
+    if (m.line > 0 && m.column > 0) {
+      place["region"]["startColumn"] = m.column;
+    }
     results.push_back({{"ruleId", m.rule},
                        {"level", to_string(m.severity)},
                        {"message", {{"text", fmt::format("{} ({})", m.text, where(group))}}},
-                       {"locations", json::array({location})}});
+                       {"locations", json::array({json{{"physicalLocation", std::move(place)}}})}});
   }
   json notes = json::array();
   for (const auto &[target, names] : left_out(report)) {

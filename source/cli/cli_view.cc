@@ -34,7 +34,9 @@ void add_view(CLI::App &app)
       write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}}, Alpha::Written);
     };
     o->read_picture = [](const std::filesystem::path &path) {
-      scene::WorldPicture picture = read_world_picture(path);
+      // The window shows no warnings of pictures.
+      std::vector<std::string> warnings;
+      scene::WorldPicture picture = read_world_picture(path, {}, warnings);
       static_cast<void>(clamp_radiances(picture));
       return picture;
     };

@@ -71,9 +71,17 @@ std::optional<glm::vec3> parse_color(const std::string &text)
   return color;
 }
 
-scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer)
+scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer,
+                                       std::vector<std::string> &warnings)
 {
   const Picture file = read_picture(path, layer);
+  if (file.is_cube_map) {
+    throw std::runtime_error(fmt::format(
+        "{}: is a cube map, and a world must be an equirectangular picture (latitude and longitude)", path.string()));
+  }
+  for (const std::string &warning : file.warnings) {
+    warnings.push_back(fmt::format("world '{}': {}", path.string(), warning));
+  }
   scene::WorldPicture picture{file.size_px.x, file.size_px.y, {}, path.string()};
   picture.texels.reserve(file.pixels.size());
   for (int y = file.size_px.y - 1; y >= 0; y--) {
@@ -114,8 +122,11 @@ scene::Scene import_scene(const std::string &path, const WorldOptions &world, co
 {
   const std::string layer = world.world.empty() ? world.layer : "";
   gltf::ImportOptions all = options;
-  all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, layer); };
-  return gltf::import_gltf(path, all);
+  std::vector<std::string> warnings;
+  all.read_picture = [&](const std::filesystem::path &picture) { return read_world_picture(picture, layer, warnings); };
+  scene::Scene scene = gltf::import_gltf(path, all);
+  scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
+  return scene;
 }
 
 std::string world_text(const scene::World &world)
@@ -142,7 +153,7 @@ static scene::World world_of(const WorldOptions &options, std::vector<std::strin
         fmt::format("--world '{}': no file has this name, and it is no radiance: three finite numbers R,G,B, 0 or more",
                     options.world));
   }
-  scene::WorldPicture picture = read_world_picture(options.world, options.layer);
+  scene::WorldPicture picture = read_world_picture(options.world, options.layer, warnings);
   if (const std::string clamped = clamp_radiances(picture); !clamped.empty()) {
     warnings.push_back(fmt::format("world '{}': {}", options.world, clamped));
   }
@@ -171,6 +182,9 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
   }
   world->strength *= options.strength;
   world->rotation += glm::radians(options.rotation_degrees);
+  if (const std::string limited = limit_radiances(*world); !limited.empty()) {
+    scene.warnings.push_back("world: " + limited);
+  }
   scene.set_world(std::move(world));
   if (scene.is_lamp_default) {
     scene.remove(scene.placed_lamps().front().node);

@@ -52,9 +52,11 @@ void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOpti
 
 /**
  * An equirectangular picture, whose texels may be negative or infinite (scene::clamp_radiances). \a layer: \see
- * read_picture. \throws std::runtime_error naming \a path
+ * read_picture. What is to know of it is added to \a warnings. \throws std::runtime_error naming \a path, also for a
+ * picture that says that it is a cube map
  */
-[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer = {});
+[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer,
+                                                     std::vector<std::string> &warnings);
 
 /** One line for people: its picture, or its radiance. */
 [[nodiscard]] std::string world_text(const scene::World &world);

@@ -152,6 +152,8 @@ class Importer {
   MeshImporter meshes_;
   ImportedThings things_;
   std::size_t lost_node_count_ = 0;
+  /** Why the first node or object that is not drawn is left out; empty: none is. */
+  std::string first_loss_;
   std::size_t object_count_ = 0;
 
   [[nodiscard]] std::string node_label(int node) const
@@ -241,6 +243,7 @@ class Importer {
       warnings_.add_counted(node_label(index), 1,
                             "left out: its own matrix or that to the world is not finite or reaches beyond 1e12 m");
       lost_node_count_++;
+      note_loss();
       return {};
     }
     const std::string &name = file_.model.nodes[index].name;
@@ -249,6 +252,7 @@ class Importer {
     node.parent_from_node = parent_from_node;
     read_flags(file_.model.nodes[index], index, node);
     node.extras = extras_.of("nodes", index);
+    warn_of_weight_count(index);
     const std::vector<glm::dmat4> instances = instances_of(index);
     const std::size_t first_deformed = scene_.deformed_meshes.size();
     if (instances.empty()) {
@@ -283,6 +287,27 @@ class Importer {
     if (first < scene_.deformed_meshes.size()) {
       const std::vector<double> &weights = node.weights.empty() ? file_.model.meshes[node.mesh].weights : node.weights;
       scene::set_morph_weights(scene_, handle, weights);
+    }
+  }
+
+  /** The weights of a node stand beside those of its mesh. Both are one for each target. */
+  void warn_of_weight_count(int index)
+  {
+    const Model::Node &node = file_.model.nodes[index];
+    const Model::Mesh *mesh = node.mesh < 0 ? nullptr : &file_.model.meshes[node.mesh];
+    std::size_t target_count = 0;
+    for (std::size_t i = 0; mesh != nullptr && i < mesh->primitives.size(); i++) {
+      target_count = std::max(target_count, mesh->primitives[i].targets.size());
+    }
+    const auto warn = [&](const std::string &what, const std::vector<double> &weights) {
+      if (!weights.empty() && weights.size() != target_count) {
+        warnings_.add(what, "has " + std::to_string(weights.size()) + " weights and " + std::to_string(target_count) +
+                                " morph targets; the others are not used");
+      }
+    };
+    warn(node_label(index), node.weights);
+    if (mesh != nullptr && node.weights.empty()) {
+      warn(label("mesh", mesh->name, std::size_t(node.mesh)), mesh->weights);
     }
   }
 
@@ -349,6 +374,17 @@ class Importer {
       object_count_++;
       added.meshes.push_back(mesh);
     }
+    if (added.meshes.empty()) {
+      note_loss();
+    }
+  }
+
+  /** Keeps the last message, if it is about the first element that is left out. */
+  void note_loss()
+  {
+    if (first_loss_.empty() && !warnings_.empty()) {
+      first_loss_ = warnings_.messages().back();
+    }
   }
 
   [[nodiscard]] std::vector<int> visible_nodes() const
@@ -374,7 +410,7 @@ class Importer {
     }
     const std::string names = unknown_required_extensions(file_);
     throw Fault("scene", "nothing in it can be drawn" + (names.empty() ? "" : ", and it requires " + names) + ": " +
-                             warnings_.messages().back());
+                             first_loss_);
   }
 
   void add_defaults()

@@ -57,20 +57,30 @@ Axis take_axis(std::string_view &line)
   return axis;
 }
 
-/** Multiplies \a exposure by the numbers of a line of the header, of which one stands for all three. */
-void multiply(std::array<double, 3> &exposure, std::string_view numbers)
+/** Reads the numbers of a line of the header into \a values. \return the count of those that are in the line */
+std::size_t read_numbers(std::string_view numbers, std::span<double> values)
 {
-  std::array<double, 3> factors{};
   std::size_t count = 0;
-  while (count < factors.size()) {
+  while (count < values.size()) {
     numbers.remove_prefix(std::min(numbers.find_first_not_of(" \t"), numbers.size()));
-    const auto [after, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), factors[count]);
-    if (error != std::errc() || !(factors[count] > 0.0) || !std::isfinite(factors[count])) {
+    const auto [after, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), values[count]);
+    if (error != std::errc()) {
       break;
     }
     numbers.remove_prefix(std::size_t(after - numbers.data()));
     count++;
   }
+  return count;
+}
+
+/** Multiplies \a exposure by the numbers of a line of the header, of which one stands for all three. */
+void multiply(std::array<double, 3> &exposure, std::string_view numbers)
+{
+  std::array<double, 3> factors{};
+  const std::size_t read_count = read_numbers(numbers, factors);
+  const auto is_factor = [](double factor) { return factor > 0.0 && std::isfinite(factor); };
+  const auto first_bad = std::find_if_not(factors.begin(), factors.begin() + std::ptrdiff_t(read_count), is_factor);
+  const auto count = std::size_t(first_bad - factors.begin());
   if (count != 1 && count != factors.size()) {
     throw Error("has an EXPOSURE or a COLORCORR that is no number above 0");
   }
@@ -96,6 +106,14 @@ std::array<double, 3> rgb_of_xyz(const std::array<double, 3> &xyz)
 
 }  // namespace
 
+bool is_rec709(const std::array<double, 8> &primaries)
+{
+  constexpr std::array<double, 8> rec709 = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+  // Files have three decimals or more.
+  constexpr double rounding = 0.5e-3;
+  return std::ranges::equal(primaries, rec709, [](double a, double b) { return std::abs(a - b) <= rounding; });
+}
+
 bool is_radiance(std::span<const unsigned char> file)
 {
   return file.size() >= 2 && file[0] == '#' && file[1] == '?';
@@ -119,6 +137,10 @@ RadianceDecoder::RadianceDecoder(std::span<const unsigned char> file)
     }
     else if (key == "EXPOSURE" || key == "COLORCORR") {
       multiply(exposure_, value);
+    }
+    else if (key == "PRIMARIES") {
+      std::array<double, 8> primaries{};
+      has_other_primaries_ = read_numbers(value, primaries) < primaries.size() || !is_rec709(primaries);
     }
   }
   std::string_view line = take_line(text);

@@ -11,6 +11,9 @@
 
 namespace gnomon::image {
 
+/** Whether \a primaries, x and y of red, green, blue and white, are those of Rec. 709, in files that may round them. */
+[[nodiscard]] bool is_rec709(const std::array<double, 8> &primaries);
+
 /** Whether the first bytes are those of a Radiance picture (.hdr, .pic). */
 [[nodiscard]] bool is_radiance(std::span<const unsigned char> file);
 
@@ -37,6 +40,11 @@ class RadianceDecoder {
   {
     return height_;
   }
+  /** Whether its red, green and blue have stated PRIMARIES that are not those of Rec. 709. They are not converted. */
+  [[nodiscard]] bool has_other_primaries() const
+  {
+    return has_other_primaries_ && !is_xyz_;
+  }
   /** Red, green and blue of each pixel, in rows from the top. Call this once. \throws Error for a damaged file. */
   [[nodiscard]] std::vector<float> read_rgb();
 
@@ -56,6 +64,7 @@ class RadianceDecoder {
   bool is_from_right_ = false;
   bool is_from_bottom_ = false;
   bool is_xyz_ = false;
+  bool has_other_primaries_ = false;
   /** The factors of the stored values. */
   std::array<double, 3> exposure_{1.0, 1.0, 1.0};
 };

@@ -189,8 +189,8 @@ void define_pictures(py::module_ &module, SceneClass &type)
       "WebP file. Meshes need uvs for it. Raises FileError.");
   type.def("set_world", &set_world, py::arg("color") = glm::vec3(1.0F), py::arg("strength") = 1.0F,
            py::arg("rotation") = 0.0F, py::arg("picture") = py::none(),
-           "Light from all around: color · strength · picture, W/(sr m²). `rotation`: around +Y, rad. `picture`: "
-           "equirectangular, height x width x 3 float32, with the top row first; None: uniform.");
+           "Light from all around: color · strength · picture, W/(sr m²), at most 1e30. `rotation`: around +Y, rad. "
+           "`picture`: equirectangular, height x width x 3 float32, with the top row first; None: uniform.");
   type.def(
       "remove_world", [](const ScenePtr &scene) { scene->edited().set_world(std::nullopt); },
       "Remove the light from all around.");

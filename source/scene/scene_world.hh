@@ -18,7 +18,7 @@ struct WorldPicture {
   int width = 0;
   int height = 0;
   /**
-   * width · height texels, finite and at least 0, rows from the top. The unit vector (x, y, z), in glTF's axes, is at
+   * width · height texels from 0 to 1e30, rows from the top. The unit vector (x, y, z), in glTF's axes, is at
    * u = 0.5 + atan2(z, x) / 2π from the left and v = 0.5 + asin(y) / π from the bottom.
    */
   std::vector<glm::vec3> texels{};
@@ -32,7 +32,7 @@ struct WorldPicture {
   }
 };
 
-/** Light from infinitely distant surroundings. The radiance is `color` · `strength` · `picture`. */
+/** Light from infinitely distant surroundings. The radiance is `color` · `strength` · `picture`, at most 1e30. */
 struct World {
   static constexpr std::string_view kind_name = "world";
 
@@ -71,9 +71,15 @@ constexpr void World::for_each_property(Visit &&visit)
 
 /**
  * Makes all texels radiances: negative and undefined values become 0, infinite ones the largest finite value of their
- * channel. \return what was changed, with the number and the first place of each kind, for a warning; empty: nothing.
+ * channel, and none is above 1e30. \return what was changed, with the number and the first place of each kind, for a
+ * warning; empty: nothing.
  */
 [[nodiscard]] std::string clamp_radiances(WorldPicture &picture);
+/**
+ * Makes all radiances, with the color and the strength, at most 1e30: changes a copy of the picture, or the color.
+ * \return as clamp_radiances
+ */
+[[nodiscard]] std::string limit_radiances(World &world);
 
 /** Why Scene::set_world refuses \a world; empty: it does not. */
 [[nodiscard]] std::string fault_of(const World &world);

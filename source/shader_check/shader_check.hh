@@ -106,7 +106,7 @@ using RuleLevels = std::map<std::string, RuleLevel, std::less<>>;
 struct CheckMessage {
   Severity severity = Severity::Error;
   std::string file;
-  /** From 1. */
+  /** From 1; 0: none, as a `#line` has made it negative. */
   int line = 1;
   std::string text;
   /** CheckRule::name. */

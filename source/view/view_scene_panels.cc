@@ -264,7 +264,8 @@ bool show_world(Document &document)
   else {
     ImGui::TextDisabled("The same from everywhere");
   }
-  if (show_properties(world)) {
+  // The product of color, strength and picture may be too large where each of them is not.
+  if (show_properties(world) && fault_of(world).empty()) {
     document.set_world(world);
   }
   return is_asked;

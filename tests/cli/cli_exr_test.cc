@@ -12,9 +12,11 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 
+#include <array>
 #include <bit>
 #include <fstream>
 #include <limits>
@@ -138,6 +140,88 @@ TEST_F(ExrPictureTest, ChromaIsColourAndNotGrey)
   EXPECT_NE(error_of("two.exr", "b").find((folder / "two.exr").string() + ": has luminance and chroma (Y, RY and BY)"),
             std::string::npos)
       << error_of("two.exr", "b");
+}
+
+TEST_F(ExrPictureTest, ChromaOfAnotherSizeIsRefusedInWords)
+{
+  // Pixels of the picture for each of RY and BY.
+  for (const glm::ivec2 step : {glm::ivec2(1, 1), glm::ivec2(2, 1), glm::ivec2(1, 2), glm::ivec2(4, 4)}) {
+    Imf::Header header(4, 4);
+    header.channels().insert("Y", Imf::Channel(Imf::HALF));
+    header.channels().insert("RY", Imf::Channel(Imf::HALF, 2, 2));
+    header.channels().insert("BY", Imf::Channel(Imf::HALF, step.x, step.y));
+    {
+      Imf::OutputFile file((folder / "a.exr").c_str(), header);
+      std::array<half, 16> values{};
+      Imf::FrameBuffer buffer;
+      for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+        buffer.insert(channel.name(),
+                      Imf::Slice(Imf::HALF, reinterpret_cast<char *>(values.data()), sizeof(half), 4 * sizeof(half),
+                                 channel.channel().xSampling, channel.channel().ySampling));
+      }
+      file.setFrameBuffer(buffer);
+      file.writePixels(4);
+    }
+    const std::string text = fmt::format("whose channel BY has one pixel for {}x{} of the picture", step.x, step.y);
+    EXPECT_NE(error_of("a.exr").find(text), std::string::npos) << error_of("a.exr");
+  }
+}
+
+TEST_F(ExrPictureTest, OtherPrimariesAreNamed)
+{
+  const std::string warning = "states other primaries than Rec. 709, and its colours are taken as Rec. 709";
+  using Warnings = std::vector<std::string>;
+  const std::array<float, 8> aces = {0.7347F, 0.2653F, 0, 1, 0.0001F, -0.077F, 0.32168F, 0.33767F};
+  const std::array<float, 8> rec709 = {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F, 0.313F, 0.329F};
+  const auto warnings_of = [&](const std::array<float, 8> &primaries, const std::vector<std::string> &channels) {
+    OIIO::ImageSpec of_file = spec;
+    of_file.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), primaries.data());
+    write_channels("a.exr", of_file, channels);
+    return cli::read_picture(folder / "a.exr").warnings;
+  };
+  EXPECT_EQ(warnings_of(aces, {"R", "G", "B"}), Warnings{warning});
+  EXPECT_EQ(warnings_of(rec709, {"R", "G", "B"}), Warnings{});
+  EXPECT_EQ(warnings_of(aces, {"Y"}), Warnings{}) << "grey";
+  for (std::size_t i = 0; i < rec709.size(); i++) {
+    std::array<float, 8> moved = rec709;
+    moved[i] += 1e-3F;
+    EXPECT_EQ(warnings_of(moved, {"R", "G", "B"}), Warnings{warning}) << i;
+  }
+  warnings_of(aces, {"R", "G", "B"});
+  write("scene.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"extras": {"gnomon_world": "a.exr"}}]})");
+  for (const char *arguments : {"info scene.gltf", "info scene.gltf --world a.exr"}) {
+    const test::Finished finished = run(arguments);
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    EXPECT_NE((finished.out + finished.err).find("world 'a.exr': " + warning), std::string::npos)
+        << finished.out << finished.err;
+  }
+  const test::Finished compared = run("compare a.exr a.exr");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_NE(compared.err.find("warning: a.exr: " + warning), std::string::npos) << compared.err;
+}
+
+TEST_F(ExrPictureTest, ACubeMapIsNoWorld)
+{
+  for (const std::string name : {"a.exr", "a.tif"}) {
+    for (const std::string format : {"CubeFace Environment", "LatLong Environment"}) {
+      OIIO::ImageSpec of_file = spec;
+      // The width of a square, and six of them in a column.
+      of_file.height = format[0] == 'C' ? 24 : 2;
+      of_file.full_height = of_file.height;
+      of_file.attribute("textureformat", format);
+      write_channels(name, of_file, {"R", "G", "B"});
+      const std::string error = name + ": is a cube map, and a world must be an equirectangular picture";
+      write("scene.gltf",
+            R"({"asset": {"version": "2.0"}, "scenes": [{"extras": {"gnomon_world": ")" + name + "\"}}]}");
+      const test::Finished given = run("info scene.gltf --world " + name);
+      EXPECT_EQ(given.status, format[0] == 'C' ? 1 : 0) << name << given.err;
+      EXPECT_EQ(given.err.find(error) != std::string::npos, format[0] == 'C') << given.err;
+      const test::Finished own = run("info scene.gltf");
+      EXPECT_EQ(own.status, 0) << own.err;
+      EXPECT_EQ((own.out + own.err).find("its world is left out: " + error) != std::string::npos, format[0] == 'C')
+          << own.out << own.err;
+    }
+  }
 }
 
 TEST_F(ExrPictureTest, TheOnlyLayerIsReadAndOneOfSeveralIsNamed)

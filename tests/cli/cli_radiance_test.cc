@@ -51,6 +51,22 @@ TEST_F(RadiancePictureTest, AreReadAsAnotherLibraryReadsThem)
   EXPECT_EQ(cli::read_picture(folder / "runs.hdr").pixels, expected);
 }
 
+TEST_F(RadiancePictureTest, OtherPrimariesAreNamed)
+{
+  const auto has_warning = [&](const std::string &lines) {
+    write("a.hdr", "#?RADIANCE\n" + lines + "\n-Y 1 +X 1\n\x80\x80\x80\x80");
+    return !cli::read_picture(folder / "a.hdr").warnings.empty();
+  };
+  EXPECT_FALSE(has_warning(""));
+  EXPECT_FALSE(has_warning("PRIMARIES=0.6400 0.3300 0.3000 0.6000 0.1500 0.0600 0.3127 0.3290\n"));
+  EXPECT_FALSE(has_warning("PRIMARIES= .64 .33 .3\t.6 .15 .06 .313 .329\r\n"));
+  // Those of Radiance itself.
+  EXPECT_TRUE(has_warning("PRIMARIES=0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333\n"));
+  EXPECT_TRUE(has_warning("PRIMARIES=0.7347 0.2653 0 1 0.0001 -0.077 0.32168 0.33767\n"));
+  EXPECT_TRUE(has_warning("PRIMARIES=0.64 0.33\n"));
+  EXPECT_FALSE(has_warning("FORMAT=32-bit_rle_xyze\nPRIMARIES=0.64 0.33\n")) << "XYZ has no primaries";
+}
+
 /** Bytes of a pixel with the values m 2^-8. */
 std::string pixel_of(int red, int green, int blue)
 {

@@ -491,6 +491,21 @@ TEST_F(ShaderFilesTest, NothingInAManifestIsLost)
   EXPECT_EQ(piped.status, 0) << piped.out << piped.err;
 }
 
+TEST_F(ShaderFilesTest, ControlCharactersOfNamesDoNotReachTheTerminal)
+{
+  write("a\x1B[31m.frag", "#version 450\n#line 1 \"b\x7F\"\nvoid main() { oops; }\n");
+  write("m.json", R"({"programs": [{"name": "c\u001b[31m\nd\u007f", "files": ["a\u001b[31m.frag"]}]})");
+  for (const char *arguments : {"--manifest m.json", "a*.frag"}) {
+    const std::string out = check(arguments).out;
+    EXPECT_NE(out.find("error: 'oops' : undeclared identifier [compile] ("), std::string::npos) << out;
+    EXPECT_TRUE(std::ranges::none_of(out, [](char c) { return (c >= 0 && c < ' ' && c != '\n') || c == '\x7F'; }))
+        << out;
+  }
+  EXPECT_NE(check("--manifest m.json").out.find("(c?[31m?d?; "), std::string::npos) << check("--manifest m.json").out;
+  const nlohmann::json json = nlohmann::json::parse(check("--manifest m.json --format json").out);
+  EXPECT_EQ(json["messages"][0]["where"][0]["shader"], "c\x1B[31m\nd\x7F") << json;
+}
+
 TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
 {
   write("text.txt", fragment_head + "#include \"near.glsl\"\nvoid main() { c = vec4(near_value + oops); }\n");
@@ -507,6 +522,25 @@ TEST_F(ShaderFilesTest, AnEditorGivesTheTextOfAFile)
     EXPECT_EQ(json["messages"][0]["line"], 4);
   }
   EXPECT_EQ(run("shaders check --stdin shaders/near.glsl --stage frag", folder / "through.sh").status, 1);
+}
+
+TEST_F(ShaderFilesTest, AMessageOnANegativeLineHasNone)
+{
+  // glslang counts on from the greatest line to the least.
+  write("a.frag", "#version 450\n#line 2147483647\n\nvoid main() { oops; }\n");
+  const std::string text = "'oops' : undeclared identifier";
+  const Finished plain = check("a.frag");
+  EXPECT_EQ(plain.out.find("a.frag: error: " + text), 0U) << plain.out;
+  EXPECT_EQ(plain.out.find('\x02'), std::string::npos) << plain.out;
+  const nlohmann::json json = nlohmann::json::parse(check("a.frag --format json").out)["messages"];
+  ASSERT_EQ(json.size(), 1U) << json;
+  EXPECT_EQ(json[0]["text"], text);
+  EXPECT_FALSE(json[0].contains("line")) << json;
+  const nlohmann::json results = nlohmann::json::parse(check("a.frag --format sarif").out)["runs"][0]["results"];
+  ASSERT_EQ(results.size(), 1U) << results;
+  const nlohmann::json place = results[0]["locations"][0]["physicalLocation"];
+  EXPECT_EQ(place["artifactLocation"]["uri"], "a.frag") << place;
+  EXPECT_FALSE(place.contains("region")) << place;
 }
 
 TEST_F(ShaderFilesTest, StandardInputThatCannotBeReadIsNoEmptyShader)

@@ -349,6 +349,16 @@ TEST_F(CliTest, AScenesOwnWorldIsUsedAndOptionsOverrideIt)
   EXPECT_NE(info("").find("world: its picture: 1 of 8 texels not a number (the first at 1, 1 from the top left)"),
             std::string::npos)
       << info("");
+  // Each but the strength is within the limit.
+  texels[4] = 1e30F;
+  cli::write_exr(folder / "sky.exr", {4, 2}, texels, {});
+  EXPECT_EQ(info("").find("warning: world"), std::string::npos) << info("");
+  const std::string beyond =
+      "world: its picture: 1 of 8 texels above 1e+30 by its color and strength (the first at 1, 1 from the top left)";
+  EXPECT_NE(info("--world-strength 10").find(beyond), std::string::npos) << info("--world-strength 10");
+  EXPECT_NE(info("--world sky.exr --world-strength 10").find(beyond), std::string::npos);
+  EXPECT_NE(info("--world 1e30,1,1 --world-strength 10").find("world: its color times its strength is 1e+31, 10, 10"),
+            std::string::npos);
   write("sky.exr", "no picture");
   EXPECT_NE(info("").find("scene: its world is left out: sky.exr: "), std::string::npos) << info("");
   for (const char *command : {"info", "render --backend null"}) {

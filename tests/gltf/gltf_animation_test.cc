@@ -98,6 +98,24 @@ TEST(GltfAnimation, MorphTargetsAreAddedByTheirWeights)
   EXPECT_EQ(scene.revision(), before) << "the same pose is no edit";
 }
 
+TEST(GltfAnimation, AnotherNumberOfWeightsThanOfMorphTargetsIsNamed)
+{
+  GltfBuilder builder = triangle_scene();
+  const int up = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  builder.document["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}};
+  builder.document["meshes"][0]["name"] = "sheet";
+  builder.node({{"name", "two"}, {"mesh", 0}, {"weights", {0.5, 1}}});
+  builder.node({{"name", "one"}, {"mesh", 0}, {"weights", {0.5}}});
+  builder.node({{"name", "bare"}, {"weights", {0.5, 1, 0}}});
+  const Scene scene = import(builder);
+  EXPECT_WARNING(scene, "node 'two': has 2 weights and 1 morph targets; the others are not used");
+  EXPECT_WARNING(scene, "node 'bare': has 3 weights and 0 morph targets; the others are not used");
+  EXPECT_NO_WARNING(scene, "node 'one'");
+  EXPECT_NO_WARNING(scene, "mesh 'sheet'");
+  builder.document["meshes"][0]["weights"] = {1, 2, 3, 4};
+  EXPECT_WARNING(import(builder), "mesh 'sheet': has 4 weights and 1 morph targets; the others are not used");
+}
+
 TEST(GltfAnimation, WhatMorphTargetsDoNotMoveIsNamed)
 {
   GltfBuilder builder = triangle_scene();

@@ -259,7 +259,8 @@ TEST(GltfWorld, ExtrasOfTheWrongTypeOrOutOfRangeAreErrors)
              "scene: gnomon_world_strength is 'a', and must be a number");
   EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_strength", 1e31}}), "gnomon_world_strength is");
   EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_rotation", 1e39}}), "gnomon_world_rotation is");
-  EXPECT_HAS(error_with({{"gnomon_world", {1e30, 1, 1}}, {"gnomon_world_color", {1e30, 1, 1}}}), "world: its color");
+  EXPECT_WARNING(import(scene_with({{"gnomon_world", {1e30, 1, 1}}, {"gnomon_world_color", {1e30, 1, 1}}})),
+                 "world: its color times its strength is inf, 1, 1, which is above 1e+30: clamped to 1e+30");
   EXPECT_HAS(error_with({{"gnomon_world_accessor", 0}}),
              "gnomon_world_width is absent, and must be present where gnomon_world_accessor is");
   EXPECT_HAS(error_with({{"gnomon_world_accessor", 0.5}, {"gnomon_world_width", 1}}), "must be a whole number");
@@ -353,6 +354,24 @@ TEST(GltfWorld, TexelsOfItsPictureThatAreNoRadiancesAreClamped)
     EXPECT_EQ(scene.world()->picture->texels, (std::vector<glm::vec3>{{0, 2, 3}}));
     EXPECT_WARNING(scene, std::string("1 of 1 texels ") + kind + " (the first at 0, 0 from the top left)");
   }
+}
+
+TEST(GltfWorld, RadianceAboveTheLimitIsClamped)
+{
+  const TemporaryFolder folder;
+  static_cast<void>(folder.write("sky.hdr", "any"));
+  const std::string place = " (the first at 0, 0 from the top left)";
+  const json weak = {{"gnomon_world", "sky.hdr"}};
+  const json strong = {{"gnomon_world", "sky.hdr"}, {"gnomon_world_strength", 1e10}, {"gnomon_world_color", {1, 1, 2}}};
+  const Scene bright = import_with_picture(folder, weak, 2e38F);
+  EXPECT_WARNING(bright, "world: its picture: 1 of 1 texels above 1e+30" + place);
+  ASSERT_TRUE(bright.world());
+  EXPECT_EQ(bright.world()->picture->texels, (std::vector<glm::vec3>{{1e30F, 2, 3}}));
+  const Scene scene = import_with_picture(folder, strong, 1e25F);
+  EXPECT_WARNING(scene, "world: its picture: 1 of 1 texels above 1e+30 by its color and strength" + place);
+  ASSERT_TRUE(scene.world());
+  EXPECT_NEAR(scene.world()->picture->texels[0].r, 1e20, 1e14);
+  EXPECT_EQ(scene.world()->strength, 1e10F);
 }
 
 TEST(GltfWorld, IsLeftOutWhereItsPictureCannotBeUsed)

@@ -854,6 +854,24 @@ PlacedLamp import_lamp(json light, json extras = nullptr, json more = json::obje
   return scene.placed_lamps().at(0);
 }
 
+TEST(GltfLamp, ARangeOf0IsNamed)
+{
+  for (const char *type : {"point", "spot", "directional"}) {
+    GltfBuilder builder = triangle_scene();
+    builder.light({{"type", type}, {"range", 0}, {"spot", json::object()}}, nullptr, json::object());
+    const Scene scene = import(builder);
+    EXPECT_EQ(scene.placed_lamps().at(0).range, 0.0F);
+    const std::string message = "lamp 'lamp': range is 0, and must be above 0; the lamp has no limit of its range";
+    // A sun has no range.
+    if (type == std::string("directional")) {
+      EXPECT_NO_WARNING(scene, message);
+    }
+    else {
+      EXPECT_WARNING(scene, message);
+    }
+  }
+}
+
 TEST(GltfLamp, PhotometricUnitsAreDividedBy683)
 {
   const PlacedLamp sun = import_lamp({{"type", "directional"}, {"intensity", 1366}, {"color", {1, 0.5, 0.25}}});

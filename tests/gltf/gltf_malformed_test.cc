@@ -365,6 +365,15 @@ TEST(GltfImport, FileWithoutUsableContentIsAnErrorWithTheReason)
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}})}});
   EXPECT_HAS(import_error(builder),
              "scene: nothing in it can be drawn: mesh 'mesh': triangle left out: a position is not finite");
+  // Messages about other elements follow.
+  builder.document["animations"] = {{{"samplers", {{{"input", positions}, {"output", positions}}}},
+                                     {"channels", {{{"sampler", 0}, {"target", {{"path", "translation"}}}}}}}};
+  builder.document["nodes"][0]["extras"] = {{"gnomon_energy", 1}};
+  EXPECT_HAS(import_error(builder),
+             "scene: nothing in it can be drawn: mesh 'mesh': triangle left out: a position is not finite");
+  // A node is lost without its mesh being read.
+  builder.document["nodes"][0]["translation"] = {1e30, 0, 0};
+  EXPECT_HAS(import_error(builder), "scene: nothing in it can be drawn: node 0: left out: its own matrix or that");
 }
 
 TEST(GltfImport, PrimitivesOfAnUnknownCompressionAreLeftOutIfTheRestCanBeDrawn)

@@ -223,14 +223,37 @@ TEST(GltfPointer, AnAnimationOfThingsThatTheSceneLacksMovesNothing)
     builder.document["meshes"][0]["primitives"][0]["material"] = 0;
     add_channel(builder, pointer_to(path), {0, 1}, {0, 1}, "SCALAR");
     Scene scene = import(builder);
-    EXPECT_WARNING(scene, "channel left out: pointer: its target is not in the scene");
     const bool is_in_file = std::string(path).starts_with("/materials/1");
+    EXPECT_WARNING(scene, std::string("channel left out: pointer: ") +
+                              (is_in_file ? "its target is not in the scene" : "the file has no material 7"));
     ASSERT_EQ(scene.animations.size(), is_in_file ? 1U : 0U) << path;
     if (is_in_file) {
       const scene::Revision before = scene.revision();
       pose_first(scene, 0.5);
       EXPECT_EQ(scene.revision(), before);
     }
+  }
+}
+
+TEST(GltfPointer, AnElementThatTheFileLacksIsNamed)
+{
+  const std::string lights = "/extensions/KHR_lights_punctual";
+  for (const auto &[path, element] :
+       {std::pair<std::string, std::string>("/nodes/9/translation", "node 9"),
+        {"/nodes/-1/scale", "node -1"},
+        {"/nodes/9/weights", "node 9"},
+        {"/nodes/9/extensions/KHR_node_visibility/visible", "node 9"},
+        {"/meshes/3/weights", "mesh 3"},
+        {"/materials/4/alphaCutoff", "material 4"},
+        {"/materials/4/normalTexture/extensions/KHR_texture_transform/rotation", "material 4"},
+        {lights + "/lights/5/intensity", "light 5"},
+        {lights + "/lights/5/spot/outerConeAngle", "light 5"},
+        {"/cameras/6/perspective/yfov", "camera 6"}}) {
+    GltfBuilder builder = triangle_scene();
+    const bool has_vectors = path.ends_with("translation") || path.ends_with("scale");
+    add_channel(builder, pointer_to(path), {0, 1}, std::vector<float>(has_vectors ? 6 : 2, 1.0F),
+                has_vectors ? "VEC3" : "SCALAR");
+    EXPECT_WARNING(import(builder), "channel left out: pointer: the file has no " + element);
   }
 }
 

@@ -194,7 +194,9 @@ class Scenes(unittest.TestCase):
                  lambda: setattr(node, "position", (0, 1e300, 0))),
                 (gnomon.InvalidEdit, "node", lambda: setattr(node, "parent", node)),
                 (TypeError, "node 'square': parent_from_node", lambda: setattr(node, "parent_from_node", [1, 2])),
-                (gnomon.InvalidEdit, "world", lambda: scene.set_world(strength=-1))):
+                (gnomon.InvalidEdit, "world", lambda: scene.set_world(strength=-1)),
+                (gnomon.InvalidEdit, r"world: its color times its strength is 1e\+31, 10, 10, which is above 1e\+30",
+                 lambda: scene.set_world(color=(1e30, 1, 1), strength=10))):
             with self.assertRaisesRegex(error, text):
                 use()
         self.assertEqual((lamp.angle, camera.near), (0, numpy.float32(0.1)))

@@ -1162,5 +1162,56 @@ TEST(SceneWorld, PictureWithATexelThatIsNoRadianceIsRefused)
   EXPECT_FALSE(scene.world());
 }
 
+TEST(SceneWorld, RadianceAboveTheLimitIsRefusedAndCanBeClamped)
+{
+  const auto largest = float(light_max);
+  const auto picture_of = [](float texel) {
+    return std::make_shared<const WorldPicture>(WorldPicture{2, 1, {glm::vec3(1, 0, 1), glm::vec3(1, texel, 1)}});
+  };
+  const auto error_of = [](const World &world) {
+    try {
+      Scene().set_world(world);
+    }
+    catch (const InvalidEdit &error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error_of({.picture = picture_of(largest)}), "");
+  EXPECT_EQ(error_of({.color = glm::vec3(largest)}), "");
+  EXPECT_EQ(error_of({.color = {1, 0, 1}, .strength = largest, .picture = picture_of(largest)}), "");
+  // The texels of the first two are above the limit alone. The light of the last is beyond float.
+  for (const World &world :
+       {World{.picture = picture_of(2e30F)}, World{.strength = 10.0F, .picture = picture_of(1e38F)},
+        World{.color = {3, 1e10F, 3}, .strength = 7e15F, .picture = picture_of(1e10F)},
+        World{.color = {1, 1e30F, 1}, .strength = 1e30F, .picture = picture_of(1e30F)}}) {
+    EXPECT_NE(error_of(world), "");
+    WorldPicture picture = *world.picture;
+    const bool is_texel_beyond = picture.texels[1].g > largest;
+    EXPECT_EQ(clamp_radiances(picture),
+              is_texel_beyond ? "1 of 2 texels above 1e+30 (the first at 1, 0 from the top left): clamped to 0 and the "
+                                "largest finite value, at most 1e+30"
+                              : "");
+    World limited = world;
+    limited.picture = std::make_shared<const WorldPicture>(picture);
+    const bool is_beyond = limited.strength != 1.0F;
+    EXPECT_EQ(limit_radiances(limited),
+              is_beyond
+                  ? "its picture: 1 of 2 texels above 1e+30 by its color and strength (the first at 1, 0 from the "
+                    "top left): clamped to 1e+30"
+                  : "");
+    EXPECT_EQ(error_of(limited), "");
+    EXPECT_EQ(limited.picture->texels[0], glm::vec3(1, 0, 1)) << "as it was";
+    EXPECT_NEAR(double(limited.picture->texels[1].g) * limited.color.g * limited.strength, light_max, 1e-6 * light_max);
+  }
+  World even{.color = {1e30F, 1, 0}, .strength = 1e30F};
+  EXPECT_NE(error_of(even).find("world: its color times its strength is 1e+60, 1e+30, 0, which is above 1e+30"),
+            std::string::npos)
+      << error_of(even);
+  EXPECT_NE(limit_radiances(even), "");
+  EXPECT_EQ(even.color, glm::vec3(1, 1, 0));
+  EXPECT_EQ(error_of(even), "");
+}
+
 }  // namespace
 }  // namespace gnomon::scene

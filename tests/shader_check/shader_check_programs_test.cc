@@ -844,11 +844,39 @@ TEST(CheckProgram, TheTakenLineDirectivesCount)
     const std::string reference = messages_of(check_texts(texts, for_target(CheckTarget::Vulkan12)));
     EXPECT_EQ(reference.find(std::string(place) + ": error: "), 0U) << lines << reference;
   }
-  const std::string negative = messages_of(
-      check_texts({{"x.frag", "#version 450\n#line -5\nlayout(location = 0) out vec4 c;\nvoid main() { c = oops; }\n"}},
-                  for_target(CheckTarget::Vulkan12)));
-  EXPECT_EQ(negative.find("x.frag:1: error: 'oops' : undeclared identifier"), 0U) << negative;
-  EXPECT_EQ(negative.find("terminated"), std::string::npos) << negative;
+  // A negative line is no line of a file; after the greatest, glslang counts on from the least.
+  for (const char *number : {"-5", "-2147483647", "2147483646", "2147483647", "-5 \"a.glsl\"", "-5 2"}) {
+    const std::string text = fmt::format(
+        "#version 450\n#line {}\n\nlayout(location = 0) out vec4 c;\n"
+        "void main() {{ oops; }}\n",
+        number);
+    const std::string negative = messages_of(check_texts({{"x.frag", text}}, for_target(CheckTarget::Vulkan12)));
+    const std::string file = std::string_view(number).ends_with('"') ? "a.glsl" : "x.frag";
+    EXPECT_EQ(negative, file + ":0: error: 'oops' : undeclared identifier [compile]\n") << number;
+  }
+}
+
+TEST(CheckProgram, AnErrorInAnIncludeHasNoOtherBehindTheInclude)
+{
+  const std::string head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n";
+  const std::string tail = "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(f()); }\n";
+  for (const std::string inner : {"float f() {\n  return oops;\n}\n", "float f() { return oops; }\n",
+                                  "#line 2 \"other.glsl\"\nfloat f() { return oops; }\n"}) {
+    const Texts files = {{"inner.glsl", inner},
+                         {"outer.glsl", "#include \"inner.glsl\"\nfloat g() { return f(); }\n"},
+                         {"x.frag", head + "#include \"outer.glsl\"\n" + tail}};
+    const std::string messages = messages_of(check_texts(files, for_target(CheckTarget::Vulkan12)));
+    EXPECT_EQ(std::ranges::count(messages, '\n'), 1) << messages;
+    EXPECT_NE(messages.find("'oops' : undeclared identifier"), std::string::npos) << messages;
+    EXPECT_EQ(messages.find("x.frag"), std::string::npos) << messages;
+  }
+  // Files that are missing are so without the error before.
+  const std::string missing =
+      messages_of(check_texts({{"inner.glsl", "#include \"a.glsl\"\n"},
+                               {"x.frag", head + "#include \"inner.glsl\"\n#include \"b.glsl\"\n" + tail}},
+                              for_target(CheckTarget::Vulkan12)));
+  EXPECT_EQ(missing.find("inner.glsl:1: error: "), 0U) << missing;
+  EXPECT_NE(missing.find("x.frag:4: error: "), std::string::npos) << missing;
 }
 
 TEST(CheckProgram, NamesThatAreKeywordsElsewhereStayInMessages)

@@ -357,7 +357,9 @@ TEST(CheckShader, UnguardedMathIsReported)
     GTEST_SKIP() << "the rule needs glslang's syntax tree, which this build has not";
   }
   for (const char *expression :
-       {"color.x = acos(clamp(dot(x, y), -1.0, 1.0));", "color.x = sqrt(max(x.x - y.x, 0.0));", "color.x = sqrt(x.x);",
+       {"color.x = acos(clamp(dot(x, y), -1.0, 1.0));", "color.x = acos(min(max(dot(x, y), -1.0), 1.0));",
+        "color.x = asin(-min(1.0, max(-1.0, dot(x, y))));", "color.x = acos(0.5 * dot(x, y));",
+        "color.x = acos(min(dot(x, x), 1.0));", "color.x = sqrt(max(x.x - y.x, 0.0));", "color.x = sqrt(x.x);",
         "color.x = sqrt(dot(x, x));", "color.x = x.x / max(length(x), 1e-6);", "color.x = 1.0 / (x.x + 2.0);",
         "float l = length(x); color.x = l > 0.0 ? 1.0 / l : 0.0;",
         "vec3 d = x - y; if (dot(d, d) > 0.0) { color.xyz = normalize(d); }",
@@ -368,10 +370,13 @@ TEST(CheckShader, UnguardedMathIsReported)
     expect_clean(check_expression(expression));
   }
   for (const char *expression :
-       {"color.x = acos(dot(x, y));", "color.x = asin(dot(x, y));", "color.x = sqrt(1.0 - x.x * x.x);",
-        "color.x = sqrt(dot(x, y));", "color.x = x.x / length(y);", "color.x = x.x / (x.y - y.y);",
-        "color.x /= distance(x, y);", "float d = dot(x, y); color.x = pow(d, 2.0);", "color.xyz = normalize(x - y);",
-        "color.xyz = normalize(cross(x, y));", "color.x = inversesqrt(dot(x, x));", "color.x = log(x.x - 1.0);"}) {
+       {"color.x = acos(dot(x, y));", "color.x = acos(max(dot(x, y), 0.0));", "color.x = asin(-dot(x, y));",
+        "color.x = acos(dot(x, y) * 1.0);", "color.x = acos(-min(1.0, 2.0 * dot(x, y)));",
+        "float d = max(0.0, dot(x, y)); float e = -d; color.x = acos(e);", "color.x = asin(dot(x, y));",
+        "color.x = sqrt(1.0 - x.x * x.x);", "color.x = sqrt(dot(x, y));", "color.x = x.x / length(y);",
+        "color.x = x.x / (x.y - y.y);", "color.x /= distance(x, y);", "float d = dot(x, y); color.x = pow(d, 2.0);",
+        "color.xyz = normalize(x - y);", "color.xyz = normalize(cross(x, y));", "color.x = inversesqrt(dot(x, x));",
+        "color.x = log(x.x - 1.0);"}) {
     SCOPED_TRACE(expression);
     expect_one(check_expression(expression), Severity::Warning, "unguarded-math", "frag", 2);
   }

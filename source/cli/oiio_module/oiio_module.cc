@@ -22,6 +22,7 @@ static Picture read(const char *path)
     throw std::runtime_error("has no channels R, G and B");
   }
   Picture picture{{spec.width, spec.height}, {}};
+  picture.is_cube_map = spec.get_string_attribute("textureformat") == "CubeFace Environment";
   picture.pixels.assign(std::size_t(spec.width) * std::size_t(spec.height), glm::vec4(1.0F));
   const auto row_bytes = OIIO::stride_t(sizeof(glm::vec4)) * spec.width;
   auto *top = reinterpret_cast<char *>(picture.pixels.data()) + row_bytes * (spec.height - 1);

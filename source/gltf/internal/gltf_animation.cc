@@ -154,15 +154,14 @@ class AnimationImporter {
     import_value_channel(sampler, *parts, *property, what, animation);
   }
 
-  /** \a index, \a count: of the target in its array of the file, and the size of the array. */
-  [[noreturn]] static void fail_without_target(int index, std::size_t count)
+  /** \a kind, \a index, \a count: what the target is, its place in its array of the file, and the array's size. */
+  [[noreturn]] static void fail_without_target(std::string_view kind, int index, std::size_t count)
   {
-    const char *const reason = "its target is not in the scene";
     // A negative index becomes larger than all sizes.
     if (std::size_t(index) < count) {
-      throw UnusedTarget("pointer", reason);
+      throw UnusedTarget("pointer", "its target is not in the scene");
     }
-    throw Fault("pointer", reason);
+    throw Fault("pointer", fmt::format("the file has no {} {}", kind, index));
   }
 
   /** The nodes that show the mesh with the mesh's own weights. */
@@ -178,14 +177,14 @@ class AnimationImporter {
       }
     }
     if (!has_target) {
-      fail_without_target(mesh, file_.model.meshes.size());
+      fail_without_target("mesh", mesh, file_.model.meshes.size());
     }
   }
 
   void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
   {
     if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
-      fail_without_target(node, file_.model.nodes.size());
+      fail_without_target("node", node, file_.model.nodes.size());
     }
     AnimatedValue value;
     value.target = things_.nodes[std::size_t(node)];
@@ -211,7 +210,7 @@ class AnimationImporter {
     }
     const auto found = things_.materials.find(parts.index);
     if (found == things_.materials.end()) {
-      fail_without_target(parts.index, file_.model.materials.size());
+      fail_without_target("material", parts.index, file_.model.materials.size());
     }
     const bool has_normals =
         input->slot == &scene::Material::normal_texture || input->slot == &scene::Material::coat_normal_texture;
@@ -249,7 +248,7 @@ class AnimationImporter {
   {
     // The index of a pointer may be any number. A negative one becomes larger than all sizes.
     if (std::size_t(node) >= file_.model.nodes.size()) {
-      throw Fault("target", "its node is not in the scene");
+      fail_without_target("node", node, file_.model.nodes.size());
     }
     if (!things_.nodes[std::size_t(node)]) {
       throw UnusedTarget("target", "its node is not in the scene");
@@ -315,7 +314,7 @@ class AnimationImporter {
     const SharedTrack moved = track(sampler, 1, Model::ElementType::Scalar);
     const auto found = things_.lamps.find(parts.index);
     if (found == things_.lamps.end()) {
-      fail_without_target(parts.index, file_.model.lights.size());
+      fail_without_target("light", parts.index, file_.model.lights.size());
     }
     const Model::Light &light = file_.model.lights[std::size_t(parts.index)];
     const auto constant = [](double angle) {
@@ -399,9 +398,11 @@ class AnimationImporter {
       }
     }
     if (!has_target) {
-      fail_without_target(parts.index, parts.collection == "materials" ? file_.model.materials.size()
-                                       : parts.collection == "lights"  ? file_.model.lights.size()
-                                                                       : file_.model.cameras.size());
+      // The name of a collection without its plural.
+      fail_without_target(parts.collection.substr(0, parts.collection.size() - 1), parts.index,
+                          parts.collection == "materials" ? file_.model.materials.size()
+                          : parts.collection == "lights"  ? file_.model.lights.size()
+                                                          : file_.model.cameras.size());
     }
   }
 

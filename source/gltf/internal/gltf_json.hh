@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -91,7 +92,8 @@ struct Member {
 template <typename Read>
 Member(std::string_view, Read) -> Member<Read>;
 
-/** A member that is stored in \a target. The type of \a target determines the member's type; an int is an index. */
+/** A member that is stored in \a target, which an optional one tells from an absent member. The type of \a target
+ * determines the member's type; an int is an index. */
 template <typename T>
 auto into(std::string_view key, T &target)
 {
@@ -108,7 +110,7 @@ auto into(std::string_view key, T &target)
                   else if constexpr (std::is_same_v<T, std::uint64_t>) {
                     target = size_at(place, value);
                   }
-                  else if constexpr (std::is_same_v<T, double>) {
+                  else if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>) {
                     target = number_at(place, value);
                   }
                   else {

@@ -50,7 +50,10 @@ class LampReader : private ExtraReader {
     static_cast<void>(checked("intensity", light.intensity, range_of<Lamp>("intensity", lumen_per_watt)));
     lamp_.intensity = static_cast<float>(light.intensity / lumen_per_watt);
     if (lamp_.kind == LampKind::Point || lamp_.kind == LampKind::Spot) {
-      lamp_.range = checked("range", light.range, range_of<Lamp>("range"));
+      lamp_.range = checked("range", light.range.value_or(0.0), range_of<Lamp>("range"));
+      if (light.range == 0.0) {
+        warnings_.add(what(), "range is 0, and must be above 0; the lamp has no limit of its range");
+      }
     }
     if (lamp_.kind == LampKind::Spot) {
       read_cone(light);

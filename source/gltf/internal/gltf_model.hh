@@ -237,8 +237,7 @@ struct Model {
     std::string type;
     std::array<double, 3> color{1.0, 1.0, 1.0};
     double intensity = 1.0;
-    /** 0: absent. */
-    double range = 0.0;
+    std::optional<double> range;
     double inner_cone_angle = 0.0;
     double outer_cone_angle = 0.78539816339744831;
   };

@@ -72,7 +72,11 @@ class WorldImporter {
       warnings_.add(name, "has no effect, because " + extras_->what() + " has a world");
     }
     try {
-      return extras_ ? of_extras() : of_light(*source, name, has_lamps);
+      World world = extras_ ? of_extras() : of_light(*source, name, has_lamps);
+      if (const std::string limited = limit_radiances(world); !limited.empty()) {
+        warnings_.add("world", limited);
+      }
+      return world;
     }
     catch (const LeftOut &reason) {
       warnings_.add(extras_ ? extras_->what() : name, std::string("its world is left out: ") + reason.what());

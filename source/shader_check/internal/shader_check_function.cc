@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace gnomon::shader_check {
 
@@ -44,10 +45,42 @@ bool is_rest_of_one(const FunctionFacts &facts, TIntermTyped *node)
          binary->getLeft()->getAsConstantUnion() != nullptr && is_share(facts.resolved(binary->getRight()));
 }
 
+/**
+ * The value that \a node is computed from without leaving a side of [-1, 1]: by a minus, a constant factor of at least
+ * 1, or one bound. With two bounds, as of `min(max(x, -1.0), 1.0)`, the inner one is returned.
+ */
+TIntermTyped *without_one_bound(const FunctionFacts &facts, TIntermTyped *node)
+{
+  const auto is_constant = [](TIntermTyped *one) { return one->getAsConstantUnion() != nullptr; };
+  const auto keeps_size = [&](TIntermTyped *one) {
+    return is_constant(one) && std::abs(one->getAsConstantUnion()->getConstArray()[0].getDConst()) >= 1.0;
+  };
+  bool has_bound = false;
+  for (node = facts.resolved(node);; node = facts.resolved(node)) {
+    const TOperator op = operator_of(node);
+    const std::vector<TIntermTyped *> parts = arguments_of(node);
+    const bool is_bound = (op == glslang::EOpMax || op == glslang::EOpMin) && !has_bound;
+    if (op == glslang::EOpNegative) {
+      node = parts[0];
+    }
+    else if (is_bound && is_constant(parts[0]) != is_constant(parts[1])) {
+      node = parts[is_constant(parts[0]) ? 1 : 0];
+      has_bound = true;
+    }
+    else if (op == glslang::EOpMul && (keeps_size(parts[0]) || keeps_size(parts[1]))) {
+      node = parts[keeps_size(parts[0]) ? 1 : 0];
+    }
+    else {
+      return node;
+    }
+  }
+}
+
 /** The reason for which \a op may fail for \a argument, as far as the expression shows it; otherwise empty. */
 std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argument)
 {
-  TIntermTyped *value = facts.resolved(argument);
+  const bool is_arc = op == glslang::EOpAcos || op == glslang::EOpAsin;
+  TIntermTyped *value = is_arc ? without_one_bound(facts, argument) : facts.resolved(argument);
   const TOperator source = operator_of(value);
   const bool is_difference = source == glslang::EOpSub;
   const bool is_dot = source == glslang::EOpDot;
@@ -60,7 +93,11 @@ std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argum
   const bool is_length = source == glslang::EOpLength || source == glslang::EOpDistance;
   switch (op) {
     case glslang::EOpAcos:
-    case glslang::EOpAsin: return is_dot ? "by rounding a scalar product may lie beyond [-1, 1]" : "";
+    // The square of a vector has the other bound itself.
+    case glslang::EOpAsin:
+      return is_dot && !(is_square && operator_of(facts.resolved(argument)) == glslang::EOpMin)
+                 ? "by rounding a scalar product may lie beyond [-1, 1]"
+                 : "";
     case glslang::EOpSqrt:
     case glslang::EOpPow:
       return (is_difference && !is_rest_of_one(facts, value)) || (is_dot && !is_square) ? "it may be below 0" : "";

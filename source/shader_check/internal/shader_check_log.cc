@@ -4,6 +4,7 @@
 #include "gpu_shader_text.hh"
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 
 namespace gnomon::shader_check {
@@ -45,22 +46,25 @@ std::optional<Severity> take_severity(gpu::TextScanner &scanner)
   return std::nullopt;
 }
 
-/** Takes `:LINE: ` or `:LINE:COLUMN: `. \return the line and the column, 0: none */
+/** Takes `:LINE: ` or `:LINE:COLUMN: `. \return the line, which may be negative, and the column, 0: none */
 std::optional<std::pair<int, int>> take_line(gpu::TextScanner &scanner)
 {
-  const bool has_colon = scanner.take(":");
-  // A `#line` may give a negative number, which is no line of a file.
-  const bool is_negative = has_colon && scanner.take("-");
-  std::optional<int> line = has_colon ? scanner.take_number() : std::nullopt;
-  line = line && is_negative ? std::optional(1) : line;
-  if (!line) {
+  if (!scanner.take(":")) {
     return std::nullopt;
   }
+  // The absolute value of the least number is no int, so the sign is read with it.
+  int number = 0;
+  const std::string_view rest = scanner.rest();
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (error != std::errc()) {
+    return std::nullopt;
+  }
+  scanner = gpu::TextScanner(rest.substr(std::size_t(end - rest.data())));
   if (scanner.take(": ")) {
-    return std::pair(*line, 0);
+    return std::pair(number, 0);
   }
   const std::optional<int> column = scanner.take(":") ? scanner.take_number() : std::nullopt;
-  return column && scanner.take(": ") ? std::optional(std::pair(*line, *column)) : std::nullopt;
+  return column && scanner.take(": ") ? std::optional(std::pair(number, *column)) : std::nullopt;
 }
 
 /** A number of errors, which the messages themselves show. */
@@ -108,6 +112,20 @@ std::optional<CompileMessage> compile_message(std::string_view line, StageSource
   return CompileMessage{*severity, "compile", version, std::string(without_space_at_end(rest))};
 }
 
+/** \a text with the names of files for ours. */
+std::string with_file_names(std::string_view text, const StageSource &source)
+{
+  std::string result;
+  for (std::size_t mark = text.find(name_mark); mark != std::string_view::npos; mark = text.find(name_mark)) {
+    result += text.substr(0, mark);
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", mark + 1), text.size());
+    const std::optional<std::size_t> file = file_named(text.substr(mark, end - mark));
+    result += file && *file < source.files().size() ? source.files()[*file] : "";
+    text.remove_prefix(end);
+  }
+  return result += text;
+}
+
 /** Gives messages that are our own their texts and rules: of an include that failed, or a limit. */
 void name_rule(CompileMessage &message)
 {
@@ -126,6 +144,24 @@ void name_rule(CompileMessage &message)
 bool is_consequence(const CompileMessage &message)
 {
   return message.text.starts_with("'' : compilation terminated") || message.text.starts_with("'' : missing #endif");
+}
+
+/**
+ * Erases the errors that only follow from the first one. glslang ends the file at an error, and goes on behind the
+ * `#include` of that file, where the rest of the file is missing. Files that are missing are so without it.
+ */
+void erase_errors_of_includers(std::vector<CompileMessage> &messages)
+{
+  const auto is_error = [](const CompileMessage &message) { return message.severity == Severity::Error; };
+  const auto first = std::ranges::find_if(messages, is_error);
+  if (first == messages.end()) {
+    return;
+  }
+  const std::size_t file = first->position.file;
+  const auto follows = [&](const CompileMessage &message) {
+    return is_error(message) && message.position.file != file && message.rule != "include";
+  };
+  messages.erase(std::remove_if(std::next(first), messages.end(), follows), messages.end());
 }
 
 }  // namespace
@@ -160,6 +196,7 @@ std::vector<CompileMessage> compile_messages(std::string_view log, StageSource &
   for (std::string line; std::getline(lines, line);) {
     if (std::optional<CompileMessage> message = compile_message(line, source)) {
       name_rule(*message);
+      message->text = with_file_names(message->text, source);
       messages.push_back(std::move(*message));
     }
     else if (!messages.empty() && !line.empty() && !line.starts_with("ERROR: ")) {
@@ -173,6 +210,7 @@ std::vector<CompileMessage> compile_messages(std::string_view log, StageSource &
   if (has_cause) {
     std::erase_if(messages, is_consequence);
   }
+  erase_errors_of_includers(messages);
   return messages;
 }
 

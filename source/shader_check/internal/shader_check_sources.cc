@@ -16,26 +16,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** Begins glslang's names of our files. No file name that a user writes in `#line` begins with it. */
-constexpr char name_mark = '\x02';
-
 /** Files may include themselves under conditions, so only the depth shows an include without an end. */
 constexpr std::size_t include_depth_max = 200;
 
 std::string name_of(std::size_t file)
 {
   return name_mark + std::to_string(file);
-}
-
-/** The file of a name that name_of() made. */
-std::optional<std::size_t> file_named(std::string_view name)
-{
-  std::size_t file = 0;
-  if (!name.starts_with(name_mark) ||
-      std::from_chars(name.data() + 1, name.data() + name.size(), file).ptr != name.data() + name.size()) {
-    return std::nullopt;
-  }
-  return file;
 }
 
 Stage stage_of(gpu::ShaderStage stage)
@@ -49,6 +35,16 @@ Stage stage_of(gpu::ShaderStage stage)
 }
 
 }  // namespace
+
+std::optional<std::size_t> file_named(std::string_view name)
+{
+  std::size_t file = 0;
+  if (!name.starts_with(name_mark) ||
+      std::from_chars(name.data() + 1, name.data() + name.size(), file).ptr != name.data() + name.size()) {
+    return std::nullopt;
+  }
+  return file;
+}
 
 std::size_t find_word(std::string_view text, std::string_view word, std::size_t from)
 {
@@ -394,7 +390,7 @@ std::string_view StageSource::unmarked(std::size_t file, std::string_view text)
 
 SourcePosition StageSource::position(std::string_view name, int line, int column)
 {
-  SourcePosition position{0, std::max(line, 1), std::max(column, 0)};
+  SourcePosition position{0, line < 0 ? 0 : std::max(line, 1), std::max(column, 0)};
   std::size_t number = 0;
   if (const std::optional<std::size_t> file = file_named(name)) {
     position.file = *file < files_.size() ? *file : 0;

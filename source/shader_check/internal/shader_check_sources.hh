@@ -18,11 +18,17 @@ namespace gnomon::shader_check {
 struct SourcePosition {
   /** Index in StageSource::files. */
   std::size_t file = 0;
-  /** From 1. */
+  /** From 1; 0: none, as a `#line` has made it negative. */
   int line = 1;
   /** From 1; 0: unknown. */
   int column = 0;
 };
+
+/** Begins glslang's names of our files, of which the index follows. No name that a user writes in `#line` begins so. */
+inline constexpr char name_mark = '\x02';
+
+/** The index in StageSource::files of a name that begins with the mark; empty for other names. */
+[[nodiscard]] std::optional<std::size_t> file_named(std::string_view name);
 
 /** Offset of the first whole word \a word in \a text at or after \a from; npos if there is none. */
 [[nodiscard]] std::size_t find_word(std::string_view text, std::string_view word, std::size_t from = 0);
