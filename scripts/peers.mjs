@@ -63,7 +63,8 @@ for (const [index, scene] of scenes.entries()) {
       const theirError = await page.evaluate((count) => window.show.error(count), samples);
       const cells = [[median(theirs), 1, 12], [theirError, 5, 10], [median(ours), 1, 12], [error, 5, 10], [median(ratios), 2, 10],
                      [Math.min(...ratios), 2, 8], [Math.max(...ratios), 2, 8]];
-      console.log(`${samples} ${shadows}`.padEnd(15) + cells.map(([value, digits, room]) => value.toFixed(digits).padStart(room)).join(' '));
+      const texts = cells.map(([value, digits, room]) => value.toFixed(digits).padStart(room));
+      console.log(`${samples} ${shadows}`.padEnd(15) + texts.join(' '));
     }
   }
   await page.close();

@@ -196,8 +196,8 @@ float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
 }
 
 /**
- * ReceiverPlane::surface_depth. \a texel_depth: change of depth along the edge of a texel towards the light. \a offset_texels: normal offset
- * of the plane. Rounding and the bias make it larger than NORMAL_OFFSET_TEXELS.
+ * ReceiverPlane::surface_depth. \a texel_depth: change of depth along the edge of a texel towards the light. \a offset_texels: normal
+ * offset of the plane. Rounding and the bias make it larger than NORMAL_OFFSET_TEXELS.
  */
 float surface_depth(float texel_depth, vec2 slope, float offset_texels)
 {
