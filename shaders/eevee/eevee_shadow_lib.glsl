@@ -10,7 +10,7 @@ layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
 layout(binding = SHADOW_MAPS_SLOT) uniform sampler2DArray shadow_maps;
 #endif
 
-/** 1: layers show the whole receiver in each sample. 0: not surely; a blended surface, for example, is in some samples. */
+/** 1: layers show the whole receiver in each sample. 0: they may not; they show a blended surface in some samples, for example. */
 SPECIALIZATION_CONSTANT(4) const int SURFACE_IN_LAYERS = IS_SURFACE_IN_LAYERS;
 /** Distance behind the receiver's plane, in texels, within which a surface in a texel may be the receiver's own. */
 const float SURFACE_TEXELS = 4.0;

@@ -51,7 +51,7 @@ struct Picture {
   std::vector<glm::vec4> pixels;
   /** The file says that its pixels are the six faces of a cube around the viewer. */
   bool is_cube_map = false;
-  /** What the reader did not do, without the name of the file. */
+  /** Statements of the file that are ignored, without its name. */
   std::vector<std::string> warnings{};
 };
 

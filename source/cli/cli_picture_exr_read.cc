@@ -208,7 +208,7 @@ void check_chroma(const Imf::ChannelList &channels, const ExrLayer &layer)
   }
 }
 
-/** Says what the colours of \a picture are, and what its pixels. */
+/** Notes a cube map, and warns of other primaries. */
 void add_facts(const Imf::Header &header, const ExrLayer &layer, Picture &picture)
 {
   picture.is_cube_map = Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE;

@@ -119,7 +119,7 @@ std::string left_out_text(std::string_view target, const std::vector<std::string
 std::string line_of(std::string text)
 {
   std::ranges::replace_if(
-      text, [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; }, '?');
+      text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7F'; }, '?');
   return text + '\n';
 }
 

@@ -52,7 +52,8 @@ void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOpti
 
 /**
  * An equirectangular picture, whose texels may be negative or infinite (scene::clamp_radiances). \a layer: \see
- * read_picture. What is to know of it is added to \a warnings. \throws std::runtime_error naming \a path, also for a
+ * read_picture. Adds what the file states and the
+ * reader ignores to \a warnings. \throws std::runtime_error naming \a path, also for a
  * picture that says that it is a cube map
  */
 [[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer,

@@ -290,7 +290,7 @@ class Importer {
     }
   }
 
-  /** The weights of a node stand beside those of its mesh. Both are one for each target. */
+  /** Warns of a number of weights that is not that of targets. A node's own weights replace those of its mesh. */
   void warn_of_weight_count(int index)
   {
     const Model::Node &node = file_.model.nodes[index];
@@ -301,8 +301,9 @@ class Importer {
     }
     const auto warn = [&](const std::string &what, const std::vector<double> &weights) {
       if (!weights.empty() && weights.size() != target_count) {
-        warnings_.add(what, "has " + std::to_string(weights.size()) + " weights and " + std::to_string(target_count) +
-                                " morph targets; the others are not used");
+        warnings_.add(what,
+                      "has " + std::to_string(weights.size()) + " weights and " + std::to_string(target_count) +
+                          " morph targets; weights without a target are not used, and targets without a weight have 0");
       }
     };
     warn(node_label(index), node.weights);
@@ -334,6 +335,7 @@ class Importer {
       warnings_.add_counted(
           node_label(index), 1,
           "instance left out: its own matrix or that to the world is not finite or reaches beyond 1e12 m");
+      note_loss();
       return;
     }
     Node node;

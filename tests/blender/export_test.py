@@ -16,7 +16,7 @@ from mathutils import Matrix, Quaternion, Vector
 FOLDER = sys.argv[sys.argv.index('--') + 1]
 LUMEN_PER_WATT = 683
 LAMBERTIAN = {'KHR_materials_specular': {'specularFactor': 0.0}}
-# Of faces without a material, as Cycles draws them.
+# The material of faces without one, as Cycles draws them.
 DEFAULT_SURFACE = {'name': 'default_surface', 'doubleSided': True, 'extensions': LAMBERTIAN, 'pbrMetallicRoughness': {
     'baseColorFactor': [0.8, 0.8, 0.8, 1.0], 'metallicFactor': 0.0, 'roughnessFactor': 0.5}}
 
@@ -910,7 +910,7 @@ class Options(ExportTest):
             subdivision.levels, subdivision.render_levels = 0, 1
         instance = add('instance', None)
         instance.instance_type, instance.instance_collection = 'COLLECTION', collections['instanced']
-        # It is hidden, and so are its particles.
+        # Hidden particles of a hidden object.
         system = bpy.data.objects['hidden'].modifiers.new('particles', 'PARTICLE_SYSTEM').particle_system.settings
         system.type, system.count, system.render_type, system.instance_object = 'HAIR', 12, 'OBJECT', bpy.data.objects['seen']
         bpy.data.objects['disabled'].hide_viewport = True

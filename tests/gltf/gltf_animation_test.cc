@@ -108,12 +108,18 @@ TEST(GltfAnimation, AnotherNumberOfWeightsThanOfMorphTargetsIsNamed)
   builder.node({{"name", "one"}, {"mesh", 0}, {"weights", {0.5}}});
   builder.node({{"name", "bare"}, {"weights", {0.5, 1, 0}}});
   const Scene scene = import(builder);
-  EXPECT_WARNING(scene, "node 'two': has 2 weights and 1 morph targets; the others are not used");
-  EXPECT_WARNING(scene, "node 'bare': has 3 weights and 0 morph targets; the others are not used");
+  EXPECT_WARNING(scene,
+                 "node 'two': has 2 weights and 1 morph targets; weights without a target are not used, and targets "
+                 "without a weight have 0");
+  EXPECT_WARNING(scene,
+                 "node 'bare': has 3 weights and 0 morph targets; weights without a target are not used, and targets "
+                 "without a weight have 0");
   EXPECT_NO_WARNING(scene, "node 'one'");
   EXPECT_NO_WARNING(scene, "mesh 'sheet'");
   builder.document["meshes"][0]["weights"] = {1, 2, 3, 4};
-  EXPECT_WARNING(import(builder), "mesh 'sheet': has 4 weights and 1 morph targets; the others are not used");
+  EXPECT_WARNING(import(builder),
+                 "mesh 'sheet': has 4 weights and 1 morph targets; weights without a target are not used, and targets "
+                 "without a weight have 0");
 }
 
 TEST(GltfAnimation, WhatMorphTargetsDoNotMoveIsNamed)

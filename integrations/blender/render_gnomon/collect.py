@@ -321,6 +321,8 @@ class Collector:
             return values
         values.update(self.principled(principled, material, content) if principled else materials.BLACK)
         if emission:
+            # An Emission replaces that of a Principled BSDF before the same Mix Shader, as in files.
+            values.pop('emissive_texture', None)
             values.update(self.emission_of(emission.inputs['Color'], emission.inputs['Strength'].default_value, content))
             self.remark_sockets(emission, material, values)
         return values

@@ -11,10 +11,10 @@ KNOWN_NODES = {'TEX_IMAGE', 'NORMAL_MAP', 'SEPARATE_COLOR', 'SEPRGB', 'MAPPING',
 IDLE_VALUES = {'BSDF_PRINCIPLED': {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}, 'BSDF_DIFFUSE': {'Roughness': 0.0},
                'EMISSION': {}, 'BACKGROUND': {}}
 BLACK = {'base_color': (0.0, 0.0, 0.0), 'specular': 0.0}
-# What Cycles draws where a face has no material: a Lambertian surface, with its name in Cryptomattes.
+# Cycles draws faces without a material as this Lambertian surface. The name is that in its Cryptomattes.
 DEFAULT_NAME = 'default_surface'
 DEFAULT_COLOR = (0.8, 0.8, 0.8)
-# Of surfaces that have no roughness of their own. A material of Blender has it at first.
+# The roughness of surfaces that have none of their own: that of a new material of Blender.
 ROUGHNESS = 0.5
 
 
@@ -74,7 +74,7 @@ def is_volume_alone(material):
 def first_of(material, kind):
     """The first node of a kind that leads to the surface of a material, which glTF's exporter reads; None if there is none."""
     above = surface_nodes(material)
-    return next((node for node in material.node_tree.nodes if node.type == kind and node in above), None) if above else None
+    return next((node for node in material.node_tree.nodes if node.type == kind and not node.mute and node in above), None) if above else None
 
 
 def principled_of(material):

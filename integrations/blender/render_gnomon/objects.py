@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What of Blender's objects is not drawn as a render draws it."""
+"""Names properties of Blender's objects that are not drawn as a render draws them."""
 
 
 def remarks_of(thing, view_layer):

@@ -32,7 +32,7 @@ inline void check_edges(std::int64_t width, std::int64_t height)
   return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
 }
 
-/** Of a file that states other primaries than those of Rec. 709. */
+/** The warning for a file that states other primaries than those of Rec. 709. */
 inline constexpr const char *primaries_warning =
     "states other primaries than Rec. 709, and its colours are taken as Rec. 709";
 

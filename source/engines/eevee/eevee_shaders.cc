@@ -6,6 +6,7 @@
 #include "shader_files.hh"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -185,14 +186,14 @@ std::string ShaderCache::failure(std::uint64_t function_key) const
 
 std::vector<Feature> ShaderCache::made(ShaderId id) const
 {
-  std::vector<Feature> variants;
+  std::set<Feature> variants;
   for (const auto &[key, shader] : shaders_) {
     const auto &[made_id, features, function] = key;
-    if (made_id == id && (variants.empty() || variants.back() != features)) {
-      variants.push_back(features);
+    if (made_id == id) {
+      variants.insert(without(features, program_constants));
     }
   }
-  return variants;
+  return {variants.begin(), variants.end()};
 }
 
 std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files,

@@ -92,8 +92,8 @@ struct Member {
 template <typename Read>
 Member(std::string_view, Read) -> Member<Read>;
 
-/** A member that is stored in \a target, which an optional one tells from an absent member. The type of \a target
- * determines the member's type; an int is an index. */
+/** A member that is stored in \a target. The type of \a target determines the member's type; an int is an index. An
+ * optional target stays empty if the member is absent. */
 template <typename T>
 auto into(std::string_view key, T &target)
 {

@@ -148,7 +148,7 @@ bool is_consequence(const CompileMessage &message)
 
 /**
  * Erases the errors that only follow from the first one. glslang ends the file at an error, and goes on behind the
- * `#include` of that file, where the rest of the file is missing. Files that are missing are so without it.
+ * `#include` of that file, where the rest of the file is missing. Errors about missing files are kept.
  */
 void erase_errors_of_includers(std::vector<CompileMessage> &messages)
 {

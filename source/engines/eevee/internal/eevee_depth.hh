@@ -21,7 +21,8 @@ class DepthPasses {
   void clear(const scene::Scene &scene, Feature features);
   /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
   [[nodiscard]] bool is_deferred(const scene::Scene &scene, const render_scene::RenderObject &object) const;
-  /** Note an object of the G-buffer. \a is_in_layers: Feature::SurfaceInLayers; false excludes it for all. */
+  /** Note an object of the G-buffer. \a is_in_layers: false excludes Feature::SurfaceInLayers for all of its objects.
+   */
   void note_deferred(bool is_in_layers)
   {
     are_all_in_layers_ &= is_in_layers;

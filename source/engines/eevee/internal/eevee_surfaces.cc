@@ -148,7 +148,7 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
     add_group(kind, recording, pass, shader, state | fixed, read, textures, recording.bind);
   };
   if (is_deferred) {
-    depth_.note_deferred(is_in_layers);
+    depth_.note_deferred(is_in_layers || material.is_unlit);
     add(depth_.gbuffer_pass(), recording.shaders.get(device, ShaderId::GBuffer, features | clip), side, surface, {});
   }
   else {
