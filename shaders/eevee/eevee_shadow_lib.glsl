@@ -10,8 +10,12 @@ layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
 layout(binding = SHADOW_MAPS_SLOT) uniform sampler2DArray shadow_maps;
 #endif
 
-/** 1: layers show the whole receiver in each sample. 0: they may not; they show a blended surface in some samples, for example. */
-SPECIALIZATION_CONSTANT(4) const int SURFACE_IN_LAYERS = IS_SURFACE_IN_LAYERS;
+/** Layers show the whole receiver in each sample. false: they may not; they show a blended surface in some samples, for example. */
+#ifdef HAS_SURFACE_IN_LAYERS
+const bool SURFACE_IN_LAYERS = true;
+#else
+const bool SURFACE_IN_LAYERS = false;
+#endif
 /** Distance behind the receiver's plane, in texels, within which a surface in a texel may be the receiver's own. */
 const float SURFACE_TEXELS = 4.0;
 
@@ -90,7 +94,7 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   vec4 lit = texels_lit(stored, receiver);
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
   vec4 on_surface = lit * step(receiver - plane.surface_depth, stored);
-  bool is_hidden = SURFACE_IN_LAYERS != 0 && dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
+  bool is_hidden = SURFACE_IN_LAYERS && dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
   // The direction towards the casters, and the four texels one further there.
   vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
   vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;

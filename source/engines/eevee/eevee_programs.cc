@@ -333,8 +333,8 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   if (has(features & declaration.features, Feature::World)) {
     desc.defines.push_back(fmt::format("HAS_WORLD_OCCLUSION {}", int(has(features, Feature::WorldOcclusion))));
   }
-  if (has(features & declaration.features, Feature::ShadowCube | Feature::ShadowMap)) {
-    desc.defines.push_back(fmt::format("IS_SURFACE_IN_LAYERS {}", int(has(features, Feature::SurfaceInLayers))));
+  if (has(features, Feature::SurfaceInLayers)) {
+    desc.defines.emplace_back("HAS_SURFACE_IN_LAYERS");
   }
   if (has(features, Feature::CoarseGrid)) {
     desc.defines.emplace_back("HAS_COARSE_GRID");
