@@ -58,6 +58,11 @@ bool has_open_shadow(const scene::Scene &scene, const scene::Mesh &mesh)
   return is_blended(scene, mesh) || (lets_light_through(scene, mesh) && !(scene.material_of(mesh).thickness > 0.0F));
 }
 
+bool has_closed_shadow(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return mesh.topology == scene::Topology::Triangles && !has_open_shadow(scene, mesh);
+}
+
 /** Absorption coefficient of the material's volume, 1/m. */
 static glm::vec3 absorption(const scene::Material &material)
 {

@@ -36,6 +36,12 @@ namespace gnomon::render_scene {
  */
 [[nodiscard]] bool has_open_shadow(const scene::Scene &scene, const scene::Mesh &mesh);
 
+/**
+ * Whether the mesh has triangles, and no open shadow: shadow layers show it in each sample. Lines and points cast no
+ * shadows.
+ */
+[[nodiscard]] bool has_closed_shadow(const scene::Scene &scene, const scene::Mesh &mesh);
+
 /** Part of white light that passes a white surface of the material, without its textures; for shadows. */
 [[nodiscard]] float transmitted_part(const scene::Material &material);
 

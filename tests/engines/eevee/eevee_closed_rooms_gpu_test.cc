@@ -428,22 +428,18 @@ TEST_F(ClosedRoomsGpuTest, SurfaceThatLayersDoNotShowHasTheSameEdges)
   EXPECT_NEAR(light, mean(picture([](scene::Node &node) { node.casts_shadow = false; }, blended)), 1e-3 * light);
 }
 
-/** A pane is in some samples of the layers, or in none. Only its own lookups differ from those of walls. Unlit surfaces
- * have no lookups. */
+/** A pane is in some samples of the layers, or in none, as are objects without shadows. Only their own lookups differ
+ * from those of walls. Unlit surfaces have no lookups. */
 TEST_F(ClosedRoomsGpuTest, APaneChangesNoOtherSurface)
 {
-  const auto picture = [&](bool has_pane, bool is_unlit) {
+  const auto picture = [&](const std::function<void(scene::Material &)> &edit_pane) {
     scene::Scene scene;
     const auto material = test::add_material(scene, glm::vec3(0.5F));
     scene.edit(material, [](scene::Material &wall) { wall.is_double_sided = true; });
     test::add_object(scene, test::add_box_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(4)));
     const auto glass = test::add_material(scene, glm::vec3(0.5F));
-    scene.edit(glass, [&](scene::Material &pane) {
-      pane.alpha_mode = is_unlit ? scene::AlphaMode::Opaque : scene::AlphaMode::Blend;
-      pane.alpha = 0.5F;
-      pane.is_unlit = is_unlit;
-    });
-    if (has_pane) {
+    if (edit_pane) {
+      scene.edit(glass, edit_pane);
       // Behind the camera. It casts no shadow, so that the layers are the same.
       const auto pane = test::add_object(scene, test::add_square_mesh(scene, glass),
                                          glm::translate(glm::dmat4(1.0), glm::dvec3(0, -3.5, 0)));
@@ -455,9 +451,15 @@ TEST_F(ClosedRoomsGpuTest, APaneChangesNoOtherSurface)
     test::Renderer renderer(*device, scene, {64, 48}, settings);
     return renderer.picture(test::camera_at({0, -3, 0}, {0, 0, 1}, 1.4F)).pixels;
   };
-  const std::vector<glm::vec4> without = picture(false, false);
-  EXPECT_EQ(picture(true, false), without) << "bit for bit";
-  EXPECT_EQ(picture(true, true), without) << "bit for bit; an opaque surface that gives light alone";
+  const std::vector<glm::vec4> without = picture(nullptr);
+  EXPECT_EQ(picture([](scene::Material &pane) {
+              pane.alpha_mode = scene::AlphaMode::Blend;
+              pane.alpha = 0.5F;
+            }),
+            without)
+      << "blended; bit for bit";
+  EXPECT_EQ(picture([](scene::Material &pane) { pane.is_unlit = true; }), without) << "unlit; bit for bit";
+  EXPECT_EQ(picture([](scene::Material & /*pane*/) {}), without) << "opaque; bit for bit";
 }
 
 }  // namespace

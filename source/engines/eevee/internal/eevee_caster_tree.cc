@@ -231,9 +231,8 @@ std::vector<scene::Bounds> CasterTree::update(const render_scene::RenderScene &s
     }
     const scene::Handle<scene::Mesh> handle = scene.object(i).mesh;
     const scene::Mesh &mesh = content.meshes()[handle];
-    if (mesh.topology != scene::Topology::Triangles || mesh.indices.empty() ||
-        !render_scene::is_drawable(content, content.material_of(mesh)) ||
-        render_scene::has_open_shadow(content, mesh)) {
+    if (mesh.indices.empty() || !render_scene::is_drawable(content, content.material_of(mesh)) ||
+        !render_scene::has_closed_shadow(content, mesh)) {
       continue;
     }
     const MeshKey key{handle.key(), content.meshes().revision(handle, scene::Mesh::Aspect::Shape)};

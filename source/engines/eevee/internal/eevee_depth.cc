@@ -78,7 +78,6 @@ void DepthPasses::clear(const scene::Scene &scene, Feature features)
     pass->clear();
   }
   is_scene_deferred_ = is_deferred_scene(scene, features);
-  are_all_in_layers_ = true;
 }
 
 bool DepthPasses::is_deferred(const scene::Scene &scene, const render_scene::RenderObject &object) const
@@ -92,8 +91,7 @@ void DepthPasses::record_lighting(gpu::Device &device, ShaderCache &shaders, Fea
   if (!has_gbuffer()) {
     return;
   }
-  draw::ShadingGroup &group = lighting_pass_.group(shaders.get(
-      device, ShaderId::DeferredLit, are_all_in_layers_ ? features : without(features, Feature::SurfaceInLayers)));
+  draw::ShadingGroup &group = lighting_pass_.group(shaders.get(device, ShaderId::DeferredLit, features));
   bind(group);
   group.bind_texture("gbuffer", buffers_.radiance, buffers_.nearest);
   group.call_procedural();

@@ -21,12 +21,6 @@ class DepthPasses {
   void clear(const scene::Scene &scene, Feature features);
   /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
   [[nodiscard]] bool is_deferred(const scene::Scene &scene, const render_scene::RenderObject &object) const;
-  /** Note an object of the G-buffer. \a is_in_layers: false excludes Feature::SurfaceInLayers for all of its objects.
-   */
-  void note_deferred(bool is_in_layers)
-  {
-    are_all_in_layers_ &= is_in_layers;
-  }
   /** The pass of objects that are not deferred. */
   [[nodiscard]] draw::Pass &depth_pass(bool is_double_sided)
   {
@@ -79,7 +73,6 @@ class DepthPasses {
   draw::Pass lighting_pass_ = draw::Pass("deferred_lit_pass", gpu::State::WriteColor | gpu::State::DepthFurther);
   DepthFeedback feedback_;
   bool is_scene_deferred_ = false;
-  bool are_all_in_layers_ = true;
 };
 
 }  // namespace gnomon::eevee
