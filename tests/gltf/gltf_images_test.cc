@@ -301,6 +301,27 @@ TEST(GltfImage, CutOffAtAnyByteLeavesTheFactor)
   }
 }
 
+/** Also where all texels come before the damage: the checksum of their chunk follows them. */
+TEST(GltfImage, APngWithAWrongBitAmongTexelsOrWithoutItsEndLeavesTheFactor)
+{
+  std::mt19937 random(7);
+  const Bytes original = noise_file("png", 24, random);
+  const std::string_view text(reinterpret_cast<const char *>(original.data()), original.size());
+  const std::size_t texels = text.find("IDAT") + 4;
+  const std::size_t end = text.rfind("IEND") - 4;
+  ASSERT_LT(texels + 1000, end);
+  for (std::size_t i = texels; i < end; i += 61) {
+    Bytes file = original;
+    file[i] ^= std::uint8_t(1U << (i % 8));
+    (void)reason({{"uri", data_uri(file)}});
+    ASSERT_FALSE(HasFailure()) << "bit of byte " << i;
+  }
+  for (std::size_t cut = 1; cut <= 16; cut++) {
+    (void)reason({{"uri", data_uri(Bytes(original.begin(), original.end() - std::ptrdiff_t(cut)))}});
+    ASSERT_FALSE(HasFailure()) << "without the last " << cut << " bytes";
+  }
+}
+
 TEST(GltfImage, DamagedBytesImportOrAreNamed)
 {
   std::mt19937 random(5);

@@ -52,6 +52,8 @@ class PngDecoder final : public Decoder {
     std::vector<Value> values(value_count());
     check_png(spng_decode_image(context_.get(), values.data(), values.size() * sizeof(Value), format, SPNG_DECODE_TRNS),
               failure);
+    // The texels may be there before the end of their chunks, whose checksums are then unread.
+    check_png(spng_decode_chunks(context_.get()), failure);
     return values;
   }
 };

@@ -399,6 +399,32 @@ TEST(FittedCascades, ShowTheirNeededBoxWithTheFilterAroundIt)
   EXPECT_GT(turned_count, 0);
 }
 
+/** Texels of the coarsest map reach beyond the casters, into the receivers beside them. */
+TEST(FittedCascades, HaveReceiversBesideNearCastersInAFinerMap)
+{
+  SunScene scene;
+  scene.casters.resize(1);
+  scene.add({3.2F, 1, -3.2F}, {0.05F, 1, 0.05F});
+  scene.add({30, 1, -95}, {0.05F, 1, 0.05F});
+  const SeenGroundPicture picture(ground_views[0], {160, 120});
+  const std::vector<SunFit> fits = scene.fits(picture, true, cascade_count_max, 0.01F);
+  ASSERT_GT(fits.size(), 1U);
+  const auto is_covered = [](const SunFit &fit, const glm::dvec3 &p) {
+    const glm::dvec4 clip = glm::dmat4(fit.view.clip_from_world()) * glm::dvec4(p, 1.0);
+    return std::max(std::abs(clip.x), std::abs(clip.y)) <= 1.0;
+  };
+  int count = 0;
+  for (const VisibleCluster &cluster : picture.clusters()) {
+    for (const glm::dvec3 &corner : cluster.corners_ws) {
+      if (cluster.distance < 12.0 && is_covered(fits.back(), corner)) {
+        count++;
+        EXPECT_TRUE(is_covered(fits.front(), corner)) << corner.x << ", " << corner.y << ", " << corner.z;
+      }
+    }
+  }
+  EXPECT_GT(count, 20);
+}
+
 /** Mean of q², see SunSlices::error, recomputed from the maps that pixels look up. \a pixel: edge at 1 m, metres. */
 double mean_error(const std::vector<SunFit> &fits, const SeenGroundPicture &picture, double pixel)
 {

@@ -276,8 +276,8 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
   const SunFit whole = fit_to(needed, lamp_from_world, size_px, false);
   const std::vector<SunSlices> choices = sun_slices(clusters,
                                                     {.lamp_from_world = lamp_from_world,
-                                                     .whole_min = glm::dvec2(needed.min),
-                                                     .whole_max = glm::dvec2(needed.max),
+                                                     .whole_min = glm::dvec2(whole.min),
+                                                     .whole_max = glm::dvec2(whole.max),
                                                      .whole_texel = glm::dvec2(whole.max - whole.min) / double(size_px),
                                                      .slice_px = inner_share(size_px) * size_px,
                                                      .is_perspective = view.is_perspective(),

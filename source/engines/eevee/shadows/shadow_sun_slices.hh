@@ -34,7 +34,9 @@ struct SunSlices {
 /** The view and the maps that slices are chosen for. */
 struct SliceConditions {
   glm::dmat3 lamp_from_world{1.0};
-  /** Limits across the light of the map behind all slices, in the lamp's axes, metres. No other surface is in shadow.
+  /**
+   * Limits across the light of the map behind all slices, in the lamp's axes, metres: with its margin, where its texels
+   * may still show casters. No other surface is in shadow.
    */
   glm::dvec2 whole_min{0.0};
   glm::dvec2 whole_max{0.0};
