@@ -58,6 +58,31 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
                      vec2(1.0 - fraction.y, fraction.y));
 }
 
+/**
+ * Whether a lookup is beyond the end of the receiver's surface: casters are beside it, and no lit texel shows the surface. Those are
+ * outside of a closed room, for example. false if layers may not show the surface. \a lit, \a stored, \a receiver: of the four texels.
+ */
+bool is_beyond_surface(vec4 lit, vec4 stored, vec4 receiver, float surface_depth)
+{
+  vec4 on_surface = lit * step(receiver - surface_depth, stored);
+  return SURFACE_IN_LAYERS && dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
+}
+
+/**
+ * Visibility at an offset from the receiver: bilinear blend of the four texels. Beyond the end of the surface, two casters make it 0:
+ * with one, edges of faces in open scenes would be darker, too.
+ */
+float offset_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
+{
+  vec2 corner = clamp(floor(plane.texel), vec2(0.0), vec2(max(size_px - 2, 0)));
+  vec2 fraction = plane.texel - floor(plane.texel);
+  vec4 stored = stored_depths(depths, layer, corner);
+  vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
+  vec4 lit = texels_lit(stored, receiver);
+  float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
+  return dot(lit, vec4(1.0)) < 2.5 && is_beyond_surface(lit, stored, receiver, plane.surface_depth) ? 0.0 : blend;
+}
+
 /** Error of a caster that is continued to the receiver, in texels. */
 const float CONTACT_ERROR_TEXELS = 0.1;
 
@@ -93,8 +118,7 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
   vec4 lit = texels_lit(stored, receiver);
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
-  vec4 on_surface = lit * step(receiver - plane.surface_depth, stored);
-  bool is_hidden = SURFACE_IN_LAYERS && dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
+  bool is_hidden = is_beyond_surface(lit, stored, receiver, plane.surface_depth);
   // The direction towards the casters, and the four texels one further there.
   vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
   vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;
@@ -164,7 +188,7 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
   }
 #endif
   return is_receiver ? receiver_visibility(depths, layer, size_px, plane) :
-                       bilinear_texels(depths, layer, size_px, plane, plane.texel);
+                       offset_visibility(depths, layer, size_px, plane);
 }
 
 /**
