@@ -84,27 +84,34 @@ struct ShapeShading {
 /**
  * Specular radiance towards the viewer for a light colour of 1. It is the integral of the transformed cosine of
  * ltc_matrix over the lamp, times the ratio of the lobe to the transformed cosine in the mean direction of the light. If
- * the lamp is small relative to the lobe, the result is the value of the lobe. If the lobe is small relative to the lamp,
- * the result is the albedo of the lobe.
+ * the lamp is small relative to the lobe, the result is the value of the lobe, also where the transformed cosine is 0. If the lobe is
+ * small relative to the lamp, the result is the albedo of the lobe.
  */
 vec3 specular_of(FlatLamp lamp, MaterialData material, Surface surface, ShapeShading shading)
 {
   ShadingFrame frame = shading.frame;
   vec4 ltc_matrix = shading.ltc_matrix;
   vec3 view = in_frame(frame, surface.view_ws);
+  bool is_rectangle = lamp.corner_count == RECTANGLE_CORNERS;
+  bool is_small = is_small_lamp(lamp.center, lamp.axis_x, lamp.axis_y, material.alpha);
+  // llvmpipe evaluates the code below for all pixels, and skips the loop over the corners where no pixel needs it.
   vec3 flux = flat_flux(ltc_transformed(ltc_matrix, lamp.center), ltc_transformed(ltc_matrix, lamp.axis_x),
-                        ltc_transformed(ltc_matrix, lamp.axis_y), lamp.corner_count, ltc_up(ltc_matrix));
-  vec3 to_light = direction_or_zero(ltc_restored(ltc_matrix, flux));
+                        ltc_transformed(ltc_matrix, lamp.axis_y), is_small ? 0 : lamp.corner_count, ltc_up(ltc_matrix));
+  vec3 to_light = is_small ? direction_or_zero(lamp.center) : direction_or_zero(ltc_restored(ltc_matrix, flux));
   vec3 half_vector = direction_or_zero(to_light + view);
-  if (flux.z <= 0.0 || to_light.z <= 0.0) {
+  if ((flux.z <= 0.0 && !is_small) || to_light.z <= 0.0) {
     return vec3(0.0);
   }
   float cos_h = clamp(half_vector.z, 0.0, 1.0);
   float lobe = ggx_lobe(to_light.z, max(view.z, 1e-4), cos_h, material.alpha) * to_light.z;
   float ratio = min(lobe / max(ltc_density(ltc_matrix, to_light), 1e-30), LTC_RATIO_MAX);
+  float facing = abs(dot(direction_or_zero(cross(lamp.axis_x, lamp.axis_y)), to_light));
+  float solid_angle = flat_lamp_solid_angle(flat_lamp_area(lamp.axis_x, lamp.axis_y, is_rectangle) * facing,
+                                            dot(lamp.center, lamp.center));
+  float reflected = is_small ? lobe * solid_angle : flux.z * ratio;
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(view, half_vector));
   // The ratio in one direction is wrong for a lamp that covers most of the lobe. All of the lobe is its albedo.
-  float covered = ltc_covered(ltc_matrix, flux.z);
-  return lamp.radiance * mix(fresnel * (flux.z * ratio), shading.albedo * covered, covered);
+  float covered = is_small ? 0.0 : ltc_covered(ltc_matrix, flux.z);
+  return lamp.radiance * mix(fresnel * reflected, shading.albedo * covered, covered);
 }
 #endif

@@ -59,28 +59,26 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
 }
 
 /**
- * Whether a lookup is beyond the end of the receiver's surface: casters are beside it, and no lit texel shows the surface. Those are
- * outside of a closed room, for example. false if layers may not show the surface. \a lit, \a stored, \a receiver: of the four texels.
+ * Whether a lookup is beyond the end of the receiver's surface: casters are beside it, and no lit texel shows the surface. The lit texels
+ * are then outside of a closed room, for example. Always false without SURFACE_IN_LAYERS. \a lit, \a stored: of the four texels.
+ * \a on_plane: depths of the receiver's plane there.
  */
-bool is_beyond_surface(vec4 lit, vec4 stored, vec4 receiver, float surface_depth)
+bool is_beyond_surface(vec4 lit, vec4 stored, vec4 on_plane, float surface_depth)
 {
-  vec4 on_surface = lit * step(receiver - surface_depth, stored);
+  vec4 on_surface = lit * step(abs(stored - on_plane), vec4(surface_depth));
   return SURFACE_IN_LAYERS && dot(lit, vec4(1.0)) < 4.0 && dot(on_surface, vec4(1.0)) == 0.0;
 }
 
-/**
- * Visibility at an offset from the receiver: bilinear blend of the four texels. Beyond the end of the surface, two casters make it 0:
- * with one, edges of faces in open scenes would be darker, too.
- */
+/** Visibility at an offset from the receiver: bilinear blend of the four texels; 0 beyond the end of the receiver's surface. */
 float offset_visibility(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane)
 {
   vec2 corner = clamp(floor(plane.texel), vec2(0.0), vec2(max(size_px - 2, 0)));
   vec2 fraction = plane.texel - floor(plane.texel);
   vec4 stored = stored_depths(depths, layer, corner);
-  vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
-  vec4 lit = texels_lit(stored, receiver);
+  vec4 on_plane = plane_depths(plane.depth, plane.slope, corner - plane.texel);
+  vec4 lit = texels_lit(stored, max(on_plane, vec4(plane.least_depth)));
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
-  return dot(lit, vec4(1.0)) < 2.5 && is_beyond_surface(lit, stored, receiver, plane.surface_depth) ? 0.0 : blend;
+  return is_beyond_surface(lit, stored, on_plane, plane.surface_depth) ? 0.0 : blend;
 }
 
 /** Error of a caster that is continued to the receiver, in texels. */

@@ -41,6 +41,16 @@ SHARED_FUNCTION float flat_lamp_solid_angle(float area, float distance_sq)
   return area / (max(distance_sq, 1e-30f) + area * (0.5f * INV_PI));
 }
 
+/** Half the size of a lamp, divided by its distance and by the alpha of a lobe, below which the lobe has one value for all of it. */
+SHARED_CONSTANT float SMALL_LAMP = 0.1f;
+
+/** Whether a flat lamp is small relative to a lobe. \see SMALL_LAMP */
+SHARED_FUNCTION bool is_small_lamp(vec3 center, vec3 axis_x, vec3 axis_y, float alpha)
+{
+  float size = SMALL_LAMP * alpha;
+  return max(dot(axis_x, axis_x), dot(axis_y, axis_y)) < size * size * dot(center, center);
+}
+
 /**
  * Alpha of a lobe that contains HIGHLIGHT_LOBE_POINTS points of a lamp. Its solid angle is about 4 π alpha². \a points_share:
  * LightShape::highlight_points_share. \a solid_angle: of the lamp.

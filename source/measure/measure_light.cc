@@ -129,11 +129,21 @@ WholeSpecular whole_specular(const LampShape &lamp, const SpecularLobe &lobe)
   const vec3 flux = shared::flat_flux(
       shared::ltc_transformed(matrix, vec3(lamp.center)), shared::ltc_transformed(matrix, vec3(lamp.axis_x)),
       shared::ltc_transformed(matrix, vec3(lamp.axis_y)), corner_count(lamp), shared::ltc_up(matrix));
-  const vec3 to_light = shared::direction_or_zero(shared::ltc_restored(matrix, flux));
-  if (flux.z <= 0.0F || to_light.z <= 0.0F) {
+  const vec3 center(lamp.center);
+  const vec3 axis_x(lamp.axis_x);
+  const vec3 axis_y(lamp.axis_y);
+  const bool is_small = shared::is_small_lamp(center, axis_x, axis_y, alpha);
+  const vec3 to_light = shared::direction_or_zero(is_small ? center : shared::ltc_restored(matrix, flux));
+  if ((flux.z <= 0.0F && !is_small) || to_light.z <= 0.0F) {
     return {};
   }
   const auto lobe_value = float(lobe_cosine(lobe, glm::dvec3(to_light)));
+  if (is_small) {
+    const float facing = std::abs(glm::dot(shared::direction_or_zero(glm::cross(axis_x, axis_y)), to_light));
+    const float area = shared::flat_lamp_area(axis_x, axis_y, lamp.outline == LampOutline::Rectangle) * facing;
+    const double light = double(lobe_value * shared::flat_lamp_solid_angle(area, glm::dot(center, center)));
+    return {.light = light, .by_ratio = light, .to_light = glm::dvec3(to_light)};
+  }
   const float ratio =
       std::min(lobe_value / std::max(shared::ltc_density(matrix, to_light), 1e-30F), shared::LTC_RATIO_MAX);
   WholeSpecular result{.by_ratio = double(flux.z * ratio),

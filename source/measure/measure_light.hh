@@ -63,7 +63,8 @@ inline constexpr int integral_set_count = 8;
 
 struct WholeSpecular {
   double light = 0.0;
-  /** The part of it that the transformed cosine alone gives. */
+  /** The part of it that the transformed cosine alone gives; for a lamp that is small relative to the lobe, all of it.
+   */
   double by_ratio = 0.0;
   /** Mean direction of the light that is reflected, for the Fresnel term. Unit vector; zero if there is no light. */
   glm::dvec3 to_light{0.0};

@@ -95,8 +95,8 @@ TEST_F(CliSettings, EachOptionIsInTheHelpAndTakesWhatItsRowAllows)
     if (arguments.empty()) {
       break;
     }
-    EXPECT_EQ(run(render + fmt::format("{}", fmt::join(arguments, " "))).status, 1)
-        << fmt::format("{}", fmt::join(arguments, "\n"));
+    const test::Finished finished = run(render + fmt::format("{}", fmt::join(arguments, " ")));
+    EXPECT_EQ(finished.status, 1) << fmt::format("{}\n", fmt::join(arguments, "\n")) << finished.err;
   }
 }
 

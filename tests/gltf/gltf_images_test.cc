@@ -316,7 +316,7 @@ TEST(GltfImage, APngWithAWrongBitAmongTexelsOrWithoutItsEndLeavesTheFactor)
     (void)reason({{"uri", data_uri(file)}});
     ASSERT_FALSE(HasFailure()) << "bit of byte " << i;
   }
-  // The last four bytes are the checksum of a chunk without content.
+  // libspng reads a file without its last four bytes, the checksum of IEND.
   for (std::size_t cut = 5; cut <= 16; cut++) {
     (void)reason({{"uri", data_uri(Bytes(original.begin(), original.end() - std::ptrdiff_t(cut)))}});
     ASSERT_FALSE(HasFailure()) << "without the last " << cut << " bytes";

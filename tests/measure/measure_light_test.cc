@@ -85,6 +85,29 @@ TEST(LightApproximations, OfASmallLampAreTheIntegral)
   }
 }
 
+/** Far from its peak, the transformed cosine ends before the lobe does. */
+TEST(LightApproximations, OfASmallLampNearTheHorizonAreTheIntegral)
+{
+  for (const double roughness : {0.5, 0.75}) {
+    for (const double view_angle : {0.15, 0.6}) {
+      const SpecularLobe lobe = lobe_of(roughness, view_angle);
+      const double size = 0.09 * lobe.alpha;
+      for (const double elevation : {0.1, 0.3}) {
+        for (int i = 0; i < 8; i++) {
+          const double azimuth = 0.25 * pi * i;
+          const glm::dvec3 to_lamp(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                   std::sin(elevation));
+          const glm::dvec3 across = glm::normalize(glm::cross(to_lamp, glm::dvec3(0, 0, 1)));
+          const LampShape lamp{
+              .center = to_lamp, .axis_x = size * across, .axis_y = size * glm::cross(to_lamp, across)};
+          EXPECT_NEAR(whole_specular(lamp, lobe).light / integrated_specular(lamp, lobe, 256).value, 1.0, 0.02)
+              << roughness << ' ' << view_angle << ' ' << elevation << ' ' << azimuth;
+        }
+      }
+    }
+  }
+}
+
 TEST(LightApproximations, OfALampAroundANarrowLobeAreItsAlbedo)
 {
   for (const double roughness : {0.03, 0.05, 0.08, 0.12}) {

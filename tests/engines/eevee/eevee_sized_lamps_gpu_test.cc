@@ -176,26 +176,27 @@ TEST_F(LampLightTest, SpecularOfOneFrameIsTheMeasuredApproximation)
       value.roughness = roughness;
     });
     const double alpha = double(roughness) * double(roughness);
-    for (const bool is_ellipse : {false, true}) {
+    // The small one is small relative to the wider lobe.
+    for (const auto &[is_ellipse, size] : {std::pair(false, 1.0), {true, 1.0}, {false, 0.05}, {true, 0.05}}) {
       test::remove_lamps(scene);
       scene::Lamp lamp;
       lamp.kind = scene::LampKind::Area;
       lamp.area_shape = is_ellipse ? scene::AreaShape::Ellipse : scene::AreaShape::Rectangle;
-      lamp.area_size_x = 1.0F;
-      lamp.area_size_y = 0.5F;
+      lamp.area_size_x = float(size);
+      lamp.area_size_y = float(0.5 * size);
       // For a radiance of 1.
-      lamp.intensity = float(is_ellipse ? 0.5 * pi : 2.0);
+      lamp.intensity = float((is_ellipse ? 0.5 * pi : 2.0) * size * size);
       test::add_lamp(scene, lamp, world_from_lamp);
       test::Renderer renderer(*device, scene, {5, 5}, {.shadow = {.kind = scene::ShadowKind::None}});
       const double expected = measure::whole_specular({.outline = is_ellipse ? measure::LampOutline::Ellipse
                                                                              : measure::LampOutline::Rectangle,
                                                        .center = center,
-                                                       .axis_x = 0.5 * glm::dvec3(world_from_lamp[0]),
-                                                       .axis_y = 0.25 * glm::dvec3(world_from_lamp[1])},
+                                                       .axis_x = 0.5 * size * glm::dvec3(world_from_lamp[0]),
+                                                       .axis_y = 0.25 * size * glm::dvec3(world_from_lamp[1])},
                                                       {.alpha = alpha, .view = view})
                                   .light;
-      EXPECT_GT(expected, 0.01);
-      EXPECT_NEAR(double(renderer.picture(camera).middle().r) / expected, 1.0, 1e-3) << roughness;
+      EXPECT_GT(expected, 0.01 * size * size);
+      EXPECT_NEAR(double(renderer.picture(camera).middle().r) / expected, 1.0, 1e-3) << roughness << ' ' << size;
     }
   }
 }

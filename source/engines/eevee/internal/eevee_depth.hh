@@ -19,7 +19,7 @@ class DepthPasses {
 
   /** Remove all calls of objects, and decide whether the scene has deferred lighting. \a features: of the frame. */
   void clear(const scene::Scene &scene, Feature features);
-  /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
+  /** Whether the G-buffer can hold the object. It must also receive shadows, as all others there do. */
   [[nodiscard]] bool is_deferred(const scene::Scene &scene, const render_scene::RenderObject &object) const;
   /** The pass of objects that are not deferred. */
   [[nodiscard]] draw::Pass &depth_pass(bool is_double_sided)

@@ -229,7 +229,8 @@ using BindLit = std::function<void(draw::ShadingGroup &)>;
 inline constexpr const char *nothing_seen = "nothing is seen";
 inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";
 inline constexpr std::string_view why_forward =
-    "most meshes have textures or other inputs, shadows are exponential, or nothing gives light";
+    "most meshes have textures or other inputs, plain objects cast no shadow, shadows are exponential, or nothing "
+    "gives light";
 inline constexpr std::string_view all_in_gbuffer = "all objects are in the G-buffer";
 
 /** The reason why no lamp has a shadow: \a no_such_lamp if shadows are enabled and at least one lamp gives light. */

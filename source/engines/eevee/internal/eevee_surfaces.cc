@@ -120,15 +120,15 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
           ? TextureSet()
           : textures_of(scene, mesh, alpha_function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
   const TextureSet surface_textures = textures_of(scene, mesh, surface);
-  // An unlit surface looks up no layers.
-  const bool is_in_layers = material.is_unlit || (object.casts_shadow && render_scene::has_closed_shadow(scene, mesh));
+  const bool is_in_layers = object.casts_shadow && render_scene::has_closed_shadow(scene, mesh);
   const Feature shadowed = is_in_layers ? features : without(features, Feature::SurfaceInLayers);
   // An object that receives no shadows is drawn with a program without shadow lookups.
   const Feature lighting = (object.receives_shadow ? shadowed : without_shadows(features)) |
                            (function.key != 0 ? lit_function_features : Feature::None);
   const bool is_transmissive = surface == MaterialClass::Transmissive;
-  // The G-buffer is lit by one program.
-  const bool is_deferred = depth_.is_deferred(scene, object) && (shadowed == features || !has(features, any_shadow));
+  // The G-buffer is lit by one program. An unlit surface looks up no layers.
+  const bool is_deferred =
+      depth_.is_deferred(scene, object) && (material.is_unlit || shadowed == features || !has(features, any_shadow));
   const bool is_blended = render_scene::is_blended(scene, mesh);
   const gpu::Shader *lit_shader =
       is_deferred || (is_transmissive && !inputs.has_behind)

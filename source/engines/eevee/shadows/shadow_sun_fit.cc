@@ -238,9 +238,9 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
 
 namespace {
 
-/** Slices for a sun's maps, and the edge of the maps, texels. */
+/** Index of a choice of slices for a sun's maps, and the edge of the maps, texels. */
 struct SlicePlan {
-  const SunSlices *slices;
+  std::size_t index;
   int size_px;
 };
 
@@ -253,18 +253,20 @@ SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int si
 {
   const auto sufficient = std::ranges::find_if(
       choices, [](const SunSlices &slices) { return slices.error <= texel_in_pixels_max * texel_in_pixels_max; });
-  const SunSlices &chosen = settings.count > 0 || sufficient == choices.end() ? choices.back() : *sufficient;
+  const bool is_last = settings.count > 0 || sufficient == choices.end();
+  const std::size_t index = is_last ? choices.size() - 1 : std::size_t(sufficient - choices.begin());
+  const SunSlices &chosen = choices[index];
   // Without an error, nothing in shadow is seen yet. Other samples may see it.
   if (!settings.can_resize || chosen.error == 0.0) {
-    return {&chosen, size_px};
+    return {index, size_px};
   }
   // Below 1, the error is proportional to the area of a texel.
   const double texel = std::sqrt(chosen.error);
   const double factor = texel_in_pixels / texel;
   const double size = size_px / std::pow(resize_step, std::floor(std::log(factor) / std::log(resize_step)));
-  const bool can_enlarge = &chosen == &choices.back() && texel > settings.texel_in_pixels_enlarged;
-  return {&chosen, int(std::clamp(std::ceil(size), std::min(128.0, double(size_px)),
-                                  double(can_enlarge ? size_max_px : size_px)))};
+  const bool can_enlarge = index + 1 == choices.size() && texel > settings.texel_in_pixels_enlarged;
+  return {index, int(std::clamp(std::ceil(size), std::min(128.0, double(size_px)),
+                                double(can_enlarge ? size_max_px : size_px)))};
 }
 
 /** Fill \a fits with cascades around \a clusters, and one around \a needed behind them. */
@@ -273,19 +275,27 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
                      float pixel_size, std::vector<SunFit> &fits)
 {
   const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / resize_step)), 1) : size_max_px;
-  const SunFit whole = fit_to(needed, lamp_from_world, size_px, false);
-  const std::vector<SunSlices> choices = sun_slices(clusters,
-                                                    {.lamp_from_world = lamp_from_world,
-                                                     .whole_min = glm::dvec2(whole.min),
-                                                     .whole_max = glm::dvec2(whole.max),
-                                                     .whole_texel = glm::dvec2(whole.max - whole.min) / double(size_px),
-                                                     .slice_px = inner_share(size_px) * size_px,
-                                                     .is_perspective = view.is_perspective(),
-                                                     .pixel_size = pixel_size},
-                                                    (settings.count > 0 ? settings.count : cascade_count_max) - 1);
+  // All maps have one size.
+  const auto slices_at = [&](int px) {
+    const SunFit whole = fit_to(needed, lamp_from_world, px, false);
+    return sun_slices(clusters,
+                      {.lamp_from_world = lamp_from_world,
+                       .whole_min = glm::dvec2(whole.min),
+                       .whole_max = glm::dvec2(whole.max),
+                       .whole_texel = glm::dvec2(whole.max - whole.min) / double(px),
+                       .slice_px = inner_share(px) * px,
+                       .is_perspective = view.is_perspective(),
+                       .pixel_size = pixel_size},
+                      (settings.count > 0 ? settings.count : cascade_count_max) - 1);
+  };
+  std::vector<SunSlices> choices = slices_at(size_px);
   const SlicePlan plan = plan_slices(choices, size_px, size_max_px, settings);
+  if (plan.size_px != size_px) {
+    // The margin of the coarsest map is wider if its texels are larger.
+    choices = slices_at(plan.size_px);
+  }
   const SunFit last = fit_to(needed, lamp_from_world, plan.size_px, false);
-  for (const SunSlice &slice : plan.slices->slices) {
+  for (const SunSlice &slice : choices[plan.index].slices) {
     const LampBox box{{slice.min, needed.min.z}, {slice.max, needed.max.z}};
     SunFit fit = fit_to(box, turned(lamp_from_world, slice.turn), plan.size_px, false);
     fit.turn = slice.turn;

@@ -35,8 +35,8 @@ struct SunSlices {
 struct SliceConditions {
   glm::dmat3 lamp_from_world{1.0};
   /**
-   * Limits across the light of the map behind all slices, in the lamp's axes, metres: with its margin, where its texels
-   * may still show casters. No other surface is in shadow.
+   * Limits across the light of the map behind all slices, in the lamp's axes, metres. They include its margin, in which
+   * a texel may show a caster. Surfaces outside of the limits are lit.
    */
   glm::dvec2 whole_min{0.0};
   glm::dvec2 whole_max{0.0};
