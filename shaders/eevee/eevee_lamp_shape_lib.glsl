@@ -105,8 +105,7 @@ vec3 specular_of(FlatLamp lamp, MaterialData material, Surface surface, ShapeSha
   float cos_h = clamp(half_vector.z, 0.0, 1.0);
   float lobe = ggx_lobe(to_light.z, max(view.z, 1e-4), cos_h, material.alpha) * to_light.z;
   float ratio = min(lobe / max(ltc_density(ltc_matrix, to_light), 1e-30), LTC_RATIO_MAX);
-  float facing = abs(dot(direction_or_zero(cross(lamp.axis_x, lamp.axis_y)), to_light));
-  float solid_angle = flat_lamp_solid_angle(flat_lamp_area(lamp.axis_x, lamp.axis_y, is_rectangle) * facing,
+  float solid_angle = flat_lamp_solid_angle(flat_lamp_area_along(lamp.axis_x, lamp.axis_y, is_rectangle, to_light),
                                             dot(lamp.center, lamp.center));
   float reflected = is_small ? lobe * solid_angle : flux.z * ratio;
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(view, half_vector));

@@ -35,6 +35,12 @@ SHARED_FUNCTION float flat_lamp_area(vec3 axis_x, vec3 axis_y, bool is_rectangle
   return (is_rectangle ? 4.0f : PI) * sqrt(dot(across, across));
 }
 
+/** The same as seen along the unit vector \a direction. */
+SHARED_FUNCTION float flat_lamp_area_along(vec3 axis_x, vec3 axis_y, bool is_rectangle, vec3 direction)
+{
+  return (is_rectangle ? 4.0f : PI) * abs(dot(cross(axis_x, axis_y), direction));
+}
+
 /** About the solid angle of a flat lamp, sr. \a area: its area times the cosine of the angle at which it is seen. */
 SHARED_FUNCTION float flat_lamp_solid_angle(float area, float distance_sq)
 {

@@ -139,8 +139,7 @@ WholeSpecular whole_specular(const LampShape &lamp, const SpecularLobe &lobe)
   }
   const auto lobe_value = float(lobe_cosine(lobe, glm::dvec3(to_light)));
   if (is_small) {
-    const float facing = std::abs(glm::dot(shared::direction_or_zero(glm::cross(axis_x, axis_y)), to_light));
-    const float area = shared::flat_lamp_area(axis_x, axis_y, lamp.outline == LampOutline::Rectangle) * facing;
+    const float area = shared::flat_lamp_area_along(axis_x, axis_y, lamp.outline == LampOutline::Rectangle, to_light);
     const double light = double(lobe_value * shared::flat_lamp_solid_angle(area, glm::dot(center, center)));
     return {.light = light, .by_ratio = light, .to_light = glm::dvec3(to_light)};
   }
