@@ -70,22 +70,20 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   float innermost = search.x * inversesqrt(max(dot(axis_x, axis_x), dot(axis_y, axis_y)));
   vec2 tap = turn * (light.kind == LIGHT_SUN ? search.y : min(search.y, 15.0));
   float radius = length(tap);
-  float count = 0.0;
-  float inverse_gaps = 0.0;
+  // The smallest gap: the map shows the sides of casters that face the lamp, and a side has smaller gaps at its edge, which the penumbra
+  // is of. Near casters also have the most visible edges.
+  float gap = 0.0;
   int i = 0;
   do {
-    float gap = shadow_gap(light, lights, surface, to_light, tap.x * axis_x + tap.y * axis_y);
-    if (gap > 0.0 && radius <= PENUMBRA_REACH * gap) {
-      count += 1.0;
-      inverse_gaps += 1.0 / gap;
+    float tap_gap = shadow_gap(light, lights, surface, to_light, tap.x * axis_x + tap.y * axis_y);
+    if (tap_gap > 0.0 && radius <= PENUMBRA_REACH * tap_gap) {
+      gap = gap > 0.0 ? min(gap, tap_gap) : tap_gap;
     }
     tap = complex_product(tap, PENUMBRA_SEARCH_STEP);
     radius = length(tap);
   } while (++i < PENUMBRA_SEARCH_TAPS && radius > innermost);
   // Without a caster, one lookup at the receiver.
-  int tap_count = count > 0.0 ? PENUMBRA_TAPS : 1;
-  // The harmonic mean is nearer to the gaps of near casters, whose shadows have the most visible edges.
-  float gap = count / max(inverse_gaps, 1e-30);
+  int tap_count = gap > 0.0 ? PENUMBRA_TAPS : 1;
   float sun_scale = gap * (1.0 - sun_drop) * inversesqrt(max(2.0 - sun_drop, 1.0));
   float sum = 0.0;
   i = 0;

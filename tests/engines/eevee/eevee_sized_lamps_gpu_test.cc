@@ -504,6 +504,39 @@ TEST_F(PenumbraSceneTest, CastersBehindTheReceiverDoNotDarkenIt)
   EXPECT_LT(darkest, 0.2F * brightest) << "a penumbra crosses the picture";
 }
 
+/** The side of a ball that faces the lamp is nearer to it than the edge that hides the lamp. */
+TEST_F(PenumbraSceneTest, BelowABallThatHidesTheLampIsLittleLight)
+{
+  for (const scene::LampKind kind : {scene::LampKind::Area, scene::LampKind::Point, scene::LampKind::Sun}) {
+    scene::Scene scene;
+    const auto material = test::add_material(scene, glm::vec3(1.0F));
+    test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(8.0)));
+    // Seen from the origin, half of the ball's angle is 0.675, and half of the lamp's at most 0.55.
+    scene::Lamp lamp;
+    lamp.kind = kind;
+    lamp.area_shape = scene::AreaShape::Ellipse;
+    lamp.area_size_x = lamp.area_size_y = 2.6F;
+    lamp.radius = 1.3F;
+    lamp.angle = 0.9F;
+    test::add_lamp(scene, lamp, glm::translate(glm::dmat4(1.0), {0, 0, 3}));
+    const auto ball = test::add_object(scene, test::add_sphere_mesh(scene, material),
+                                       glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, 0.8}), glm::dvec3(0.5)));
+    test::Renderer renderer(*device, scene, {16, 16});
+    const auto mean = [&] {
+      float sum = 0.0F;
+      for (const glm::vec4 &pixel : renderer.picture(camera_above(0.25, 0.02)).pixels) {
+        sum += pixel.r / (16.0F * 16.0F);
+      }
+      return sum;
+    };
+    const float below = mean();
+    scene.remove(ball);
+    renderer.sync();
+    // The truth is 0. The harmonic mean of the gaps that are found would leave 0.4 of area and point lamps.
+    EXPECT_LT(below / mean(), 0.32F) << int(kind);
+  }
+}
+
 using SlowPenumbraTest = PenumbraTest;
 
 TEST_P(SlowPenumbraTest, OfSamplesIsAsWideAsSimilarTrianglesSay)
