@@ -70,8 +70,8 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   float innermost = search.x * inversesqrt(max(dot(axis_x, axis_x), dot(axis_y, axis_y)));
   vec2 tap = turn * (light.kind == LIGHT_SUN ? search.y : min(search.y, 15.0));
   float radius = length(tap);
-  // The smallest gap: the map shows the sides of casters that face the lamp, and a side has smaller gaps at its edge, which the penumbra
-  // is of. Near casters also have the most visible edges.
+  // The smallest gap. The map shows the sides of casters that face the lamp. The edge of such a side casts the penumbra, and has smaller
+  // gaps than its middle. Near casters also have the most visible edges.
   float gap = 0.0;
   int i = 0;
   do {

@@ -532,7 +532,7 @@ TEST_F(PenumbraSceneTest, BelowABallThatHidesTheLampIsLittleLight)
     const float below = mean();
     scene.remove(ball);
     renderer.sync();
-    // The truth is 0. The harmonic mean of the gaps that are found would leave 0.4 of area and point lamps.
+    // The truth is 0. The harmonic mean of the gaps that are found would leave 0.47 of area and point lamps.
     EXPECT_LT(below / mean(), 0.32F) << int(kind);
   }
 }
