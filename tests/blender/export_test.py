@@ -879,6 +879,8 @@ class Options(ExportTest):
             add_box(name, collection=collection)
             setattr(layer.layer_collection.children[name], option, True)
         add_box('matte').visible_glossy = False
+        add_box('shadowless').data.materials.append(material('shadowless'))
+        bpy.data.materials['shadowless'].shadow_method = 'NONE'
         render.engine, self.scene.eevee.use_bloom = 'BLENDER_EEVEE', True
         render.use_border = render.use_multiview = render.use_freestyle = True
         self.scene.background_set = bpy.data.scenes.new('set')
@@ -886,8 +888,8 @@ class Options(ExportTest):
         report = File().report
         for text in ("object 'held': holdouts and shadow catchers are drawn", "object 'indirect': it is hidden from the camera in Blender and is drawn",
                      "object 'matte': it is hidden from rays of the kinds glossy", "scene: the whole picture is drawn, not its render region alone",
-                     "scene: one view is drawn", "scene: lines of Freestyle", "scene: EEVEE's bloom", "scene: its background set 'set' is not written",
-                     "its material override 'clay' is not drawn"):
+                     "scene: one view is drawn", "scene: lines of Freestyle", "scene: EEVEE's bloom", "material 'shadowless': its shadow mode None is not drawn",
+                     "scene: its background set 'set' is not written", "its material override 'clay' is not drawn"):
             self.assertIn(text, report)
 
     def test_simplified_scenes_are_written_as_rendered(self):

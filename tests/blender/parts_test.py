@@ -17,6 +17,7 @@ package.__path__ = [sys.argv[1]]
 sys.modules["render_gnomon"] = package
 closed = importlib.import_module("render_gnomon.closed")
 lamps = importlib.import_module("render_gnomon.lamps")
+objects = importlib.import_module("render_gnomon.objects")
 
 BOX_TRIANGLES = numpy.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2),
                              (1, 3, 7), (1, 7, 5)])
@@ -24,6 +25,20 @@ BOX_TRIANGLES = numpy.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 
 
 def box(a, b, c, place=(0, 0, 0)):
     return numpy.array([(x, y, z) for z in (0, c) for y in (0, b) for x in (0, a)]) + place
+
+
+class LightLinking(unittest.TestCase):
+    """Blender has it from 4.0 on."""
+
+    def remarks(self, **collections):
+        linking = types.SimpleNamespace(**{'receiver_collection': None, 'blocker_collection': None, **collections})
+        return objects.light_remarks_of(types.SimpleNamespace(light_linking=linking))
+
+    def test_is_named(self):
+        self.assertEqual(objects.light_remarks_of(types.SimpleNamespace()), [])
+        self.assertEqual(self.remarks(), [])
+        for name in ('receiver_collection', 'blocker_collection'):
+            self.assertIn("light linking is not drawn", self.remarks(**{name: object()})[0])
 
 
 class MeanChord(unittest.TestCase):

@@ -434,7 +434,7 @@ class Export:
     def lamp_extras(self, node, thing):
         lamp, what = thing.data, f"lamp '{thing.name}'"
         extras, remarks = lamps.extras_of(lamp)
-        self.report.add_all(what, remarks)
+        self.report.add_all(what, [*objects.light_remarks_of(thing), *remarks])
         extension = (node.extensions or {}).get('KHR_lights_punctual')
         if extension is not None:
             light = extension.extension['light'].extension

@@ -224,6 +224,8 @@ class Collector:
 
     def thing_of(self, thing, content):
         if thing.type == 'LIGHT':
+            for remark in objects.light_remarks_of(thing.original):
+                self.remark(f"lamp '{thing.name}': {remark}")
             return Thing(lamp=self.lamp_of(thing, content))
         if thing.type in WITH_SURFACE:
             mesh = self.mesh_of(thing, content)

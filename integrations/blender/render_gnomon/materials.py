@@ -139,6 +139,9 @@ def remarks_of(material):
                        (f"{' and '.join(parts)} before it" if parts else "the material's colour for viewports") + "; use a Principled BSDF")
     if source_of(output.inputs['Displacement']) is not None:
         remarks.append("its displacement is not drawn")
+    # EEVEE's option before 4.2.
+    if getattr(material, 'shadow_method', 'OPAQUE') == 'NONE':
+        remarks.append("its shadow mode None is not drawn, as in Cycles; Object Properties > Visibility > Shadow hides the shadow of an object")
     volume = source_of(output.inputs['Volume'])
     if volume is not None and surface is not None and volume.type != 'VOLUME_ABSORPTION':
         remarks.append(f"its volume, the node '{volume.name}', is not drawn")

@@ -2,9 +2,18 @@
 """Names properties of Blender's objects that are not drawn as a render draws them."""
 
 
+def light_remarks_of(thing):
+    """Sentences about the light of a lamp or of an object with a surface."""
+    # Blender 4.0 and later.
+    linking = getattr(thing, 'light_linking', None)
+    if linking is not None and (linking.receiver_collection or linking.blocker_collection):
+        return ["its light linking is not drawn: its light reaches all objects, and all objects block it"]
+    return []
+
+
 def remarks_of(thing, view_layer):
     """Sentences about an object with a surface."""
-    remarks = []
+    remarks = light_remarks_of(thing)
     if thing.is_holdout or thing.is_shadow_catcher or thing.holdout_get(view_layer=view_layer):
         remarks.append("holdouts and shadow catchers are drawn as surfaces")
     if not thing.visible_camera or thing.indirect_only_get(view_layer=view_layer):
