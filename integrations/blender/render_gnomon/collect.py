@@ -311,7 +311,7 @@ class Collector:
 
     def properties_of(self, material, content):
         values = {**MATERIAL, 'name': material.name, 'is_double_sided': not material.use_backface_culling}
-        if not material.use_nodes or material.node_tree is None:
+        if not materials.has_nodes(material):
             return {**values, 'base_color': tuple(material.diffuse_color[:3]), 'metallic': material.metallic, 'roughness': material.roughness}
         plain = materials.plain_values(material)
         if plain is not None:

@@ -23,9 +23,14 @@ def is_known(node):
     return node.type in KNOWN_NODES and not (node.type == 'ATTRIBUTE' and node.attribute_type != 'GEOMETRY')
 
 
-def output_of(tree):
-    outputs = [node for node in tree.nodes if node.type == 'OUTPUT_MATERIAL']
-    return next((node for node in outputs if node.is_active_output), None)
+def has_nodes(material):
+    return material.use_nodes and material.node_tree is not None
+
+
+def output_of(material):
+    """The output that a render reads; None if there is none, or if the material has no nodes."""
+    nodes = material.node_tree.nodes if has_nodes(material) else ()
+    return next((node for node in nodes if node.type == 'OUTPUT_MATERIAL' and node.is_active_output), None)
 
 
 def link_of(socket):
@@ -55,19 +60,19 @@ def upstream(socket, seen):
 
 def surface_nodes(material):
     """The nodes that lead to the surface of a material."""
-    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    output = output_of(material)
     return upstream(output.inputs['Surface'], []) if output else []
 
 
 def surface_of(material):
     """The node at the surface of a material; None if there is none, or if the material has no nodes."""
-    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    output = output_of(material)
     return source_of(output.inputs['Surface']) if output else None
 
 
 def is_volume_alone(material):
     """Whether a material has a volume and no surface, so that light passes it."""
-    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    output = output_of(material)
     return output is not None and source_of(output.inputs['Surface']) is None and source_of(output.inputs['Volume']) is not None
 
 
@@ -87,7 +92,7 @@ def emission_of(material):
 
 def plain_values(material):
     """Properties of Gnomon of a material with nodes that are drawn neither from a file nor in the viewport; None for others."""
-    if not material.use_nodes or material.node_tree is None:
+    if not has_nodes(material):
         return None
     surface = surface_of(material)
     if surface is None:
@@ -112,9 +117,9 @@ def placing_remarks(material):
 
 def remarks_of(material):
     """Sentences about what of a material is not drawn."""
-    if not material.use_nodes or material.node_tree is None:
+    if not has_nodes(material):
         return []
-    output = output_of(material.node_tree)
+    output = output_of(material)
     if output is None:
         return ["it has no output, so that Blender draws it black"]
     remarks = placing_remarks(material)
@@ -150,7 +155,7 @@ def remarks_of(material):
 
 def uses_color_attribute(material):
     """Whether a material reads the colours of vertices."""
-    return material is not None and material.use_nodes and material.node_tree is not None and any(
+    return material is not None and has_nodes(material) and any(
         node.type in ('VERTEX_COLOR', 'ATTRIBUTE', 'GROUP') for node in material.node_tree.nodes)
 
 
@@ -182,7 +187,7 @@ def colors_of(mesh, name):
 
 def absorption(material):
     """(attenuation colour, attenuation distance in metres) of a Volume Absorption at the output; None if there is none."""
-    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    output = output_of(material)
     volume = source_of(output.inputs['Volume']) if output else None
     if volume is None or volume.type != 'VOLUME_ABSORPTION':
         return None

@@ -65,7 +65,7 @@ class Temporary:
     def replace_diffuse(self, material):
         """Puts a Principled BSDF at the surface of a material in the place of its Diffuse BSDF."""
         tree = material.node_tree
-        surface = materials.output_of(tree).inputs['Surface']
+        surface = materials.output_of(material).inputs['Surface']
         diffuse = materials.source_of(surface)
         node = tree.nodes.new('ShaderNodeBsdfPrincipled')
         for socket, name in ((diffuse.inputs['Color'], 'Base Color'), (diffuse.inputs['Normal'], 'Normal')):
