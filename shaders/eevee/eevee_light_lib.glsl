@@ -80,20 +80,19 @@ LightShape shape_at(int index)
 #define LIGHTS_WITH_MAPS 2
 
 /**
- * Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. \a offset: 0 at the receiver,
- * \see ShadowPlace; \a least_gap: \see shadow_cube_visibility. Both are ignored by SHADOW_ESM. \a is_receiver: \see receiver_visibility.
+ * Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. \a is_receiver:
+ * \see receiver_visibility.
  */
-float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset, float least_gap,
-                       const bool is_receiver)
+float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, const bool is_receiver)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset, least_gap, is_receiver);
+    return shadow_cube_visibility(cube_receiver(light.shadow_index, surface, light, to_light), surface, vec3(0.0), 0.0, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(light.shadow_index, surface, to_light, offset, least_gap, is_receiver);
+    return shadow_map_visibility(light.shadow_index, surface, to_light, vec3(0.0), 0.0, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_ESM
@@ -270,7 +269,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0, true);
+  float visibility = light_visibility(light, lights, surface, center.to_light, true);
   if (visibility <= 0.0) {
     return vec3(0.0);
   }

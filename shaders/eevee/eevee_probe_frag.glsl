@@ -20,7 +20,7 @@ void main()
   Surface surface = make_surface();
   LightData light = light_data.lights[probed_light];
   vec3 to_light = light.kind == LIGHT_SUN ? -light.forward_ws : light.position_ws - surface.position_ws;
-  float visibility = light_visibility(light, LIGHTS_ALL, surface, normalized(to_light, vec3(0.0)), vec3(0.0), 0.0, true);
+  float visibility = light_visibility(light, LIGHTS_ALL, surface, normalized(to_light, vec3(0.0)), true);
   position_visibility = vec4(surface.position_ws, visibility);
   normal = vec4(surface.geometric_normal_ws, 1.0);
 }

@@ -238,42 +238,71 @@ int filter_of(ShadowCubeData cube)
   return cube.faces_and_filter >> SHADOW_CUBE_FACE_BITS;
 }
 
-/** \a offset: \see ShadowPlace. */
-ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light, vec3 offset)
+/** A receiver and its cube: what all lookups there share. llvmpipe does not move it out of loops over lookups. */
+struct CubeReceiver {
+  ShadowCubeData cube;
+  /** From the light, with the normal offset. */
+  vec3 from_light;
+  /** Of the receiver's plane n · p = c: the near plane's distance divided by c. */
+  float per_metre;
+  /** Normal offset, texels. */
+  float offset_texels;
+  /** Lower left corner and extent of the part of each face that its layer holds, of 1. */
+  vec2 crop_corner;
+  vec2 crop_extent;
+  /** Half of the layer's edge for each tangent of the angle from the face's axis, of 1. */
+  float uv_scale;
+  bool is_in_range;
+};
+
+CubeReceiver cube_receiver(int index, Surface surface, LightData light, vec3 to_light)
 {
-  // No early returns: llvmpipe evaluates the code after them all the same, and then selects each member.
+  CubeReceiver receiver;
+  receiver.cube = shadow.cubes[index];
   // Distance along the axis of the face that contains the receiver.
   vec3 from_light = surface.position_ws - light.position_ws;
   float w = largest(from_light);
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
-  float rounding = DEPTH_ROUNDING / cube.near * w * w;
-  float normal_offset = cube.bias * shadow_normal_offset(cube.texel_size * w, kernel_reach(filter_of(cube)), rounding, magnitude);
+  float near = receiver.cube.near;
+  float texel = receiver.cube.texel_size * w;
+  float rounding = DEPTH_ROUNDING / near * w * w;
+  float normal_offset = receiver.cube.bias * shadow_normal_offset(texel, kernel_reach(filter_of(receiver.cube)), rounding, magnitude);
   // Do not offset past the lamp. From behind, the plane would be reversed.
   normal_offset = min(normal_offset, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
-  from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
-  int face = cube_face(from_light + offset);
-  vec3 p = cube_face_project(face, from_light + offset);
+  receiver.from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
+  receiver.per_metre = slope_quotient(near, dot(surface.geometric_normal_ws, receiver.from_light));
+  receiver.offset_texels = normal_offset / max(texel, 1e-30);
+  vec4 crop = unpackUnorm4x8(receiver.cube.crop);
+  receiver.crop_corner = crop.xy;
+  receiver.crop_extent = crop.zw - crop.xy;
+  receiver.uv_scale = 0.5 * cube_uv_scale(float(receiver.cube.size_px));
+  receiver.is_in_range = w <= receiver.cube.far;
+  return receiver;
+}
+
+/** \a offset: \see ShadowPlace. */
+ShadowPlace cube_place(CubeReceiver receiver, Surface surface, vec3 offset)
+{
+  // No early returns: llvmpipe evaluates the code after them all the same, and then selects each member.
+  ShadowCubeData cube = receiver.cube;
+  int face = cube_face(receiver.from_light + offset);
+  vec3 p = cube_face_project(face, receiver.from_light + offset);
   float size = float(cube.size_px);
-  vec4 crop = unpackUnorm4x8(cube.crop);
-  float uv_scale = 0.5 * cube_uv_scale(size);
-  vec2 extent = crop.zw - crop.xy;
   float per_z = 1.0 / max(p.z, 1e-30);
-  vec2 uv = (p.xy * (per_z * uv_scale) + 0.5 - crop.xy) / max(extent, vec2(1.0 / 255.0));
+  vec2 uv = (p.xy * (per_z * receiver.uv_scale) + 0.5 - receiver.crop_corner) / max(receiver.crop_extent, vec2(1.0 / 255.0));
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
-  float per_metre = slope_quotient(cube.near, dot(surface.geometric_normal_ws, from_light));
   ShadowPlace place;
   place.receiver_depth = cube.near * per_z;
   place.plane.texel = uv * size - 0.5;
-  place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre * per_z;
-  place.plane.slope = n.xy * (per_metre / (uv_scale * size)) * extent;
+  place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * receiver.per_metre * per_z;
+  place.plane.slope = n.xy * (receiver.per_metre / (receiver.uv_scale * size)) * receiver.crop_extent;
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
-  place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope,
-                                            normal_offset / max(cube.texel_size * w, 1e-30));
+  place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope, receiver.offset_texels);
   place.layer = cube.layer + face;
   // Beyond the part of the face that its layer holds, there is no surface of the picture.
   bool is_in_crop = all(lessThanEqual(abs(uv - 0.5), vec2(0.5)));
-  place.is_covered = w <= cube.far && (cube.faces_and_filter >> face & 1) != 0 && p.z > 0.0 && is_in_crop;
+  place.is_covered = receiver.is_in_range && (cube.faces_and_filter >> face & 1) != 0 && p.z > 0.0 && is_in_crop;
   return place;
 }
 
@@ -281,11 +310,10 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
  * \a least_gap: of the casters that count; 0: all. Not for suns. \see eevee_penumbra_lib.glsl. \a is_receiver: the lookup is at the
  * receiver itself, \see receiver_visibility.
  */
-float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset, float least_gap,
-                             const bool is_receiver)
+float shadow_cube_visibility(CubeReceiver receiver, Surface surface, vec3 offset, float least_gap, const bool is_receiver)
 {
-  ShadowCubeData cube = shadow.cubes[index];
-  ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
+  ShadowCubeData cube = receiver.cube;
+  ShadowPlace place = cube_place(receiver, surface, offset);
   // A depth is the quotient of the near plane's distance and the caster's.
   place.plane.least_depth = max(place.plane.least_depth, least_gap > 0.0 ? place.receiver_depth * (1.0 + least_gap) : 0.0);
   return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane, is_receiver)
@@ -293,12 +321,11 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
 }
 
 /** \see shadow_gap */
-float shadow_cube_gap(int index, Surface surface, LightData light, vec3 to_light, vec3 offset)
+float shadow_cube_gap(CubeReceiver receiver, Surface surface, vec3 offset)
 {
-  ShadowCubeData cube = shadow.cubes[index];
-  ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
+  ShadowPlace place = cube_place(receiver, surface, offset);
   // A depth is the quotient of the near plane's distance and the caster's.
-  return place.is_covered ? max(caster_depth(shadow_cubes, place, cube.size_px) / place.receiver_depth - 1.0, 0.0) : 0.0;
+  return place.is_covered ? max(caster_depth(shadow_cubes, place, receiver.cube.size_px) / place.receiver_depth - 1.0, 0.0) : 0.0;
 }
 
 /** \see shadow_search */

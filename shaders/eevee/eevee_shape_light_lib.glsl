@@ -38,7 +38,7 @@ float shape_visibility(LightData light, const int lights, LightShape shape, Surf
 {
   if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
     // It reads neither a cube nor a map. llvmpipe evaluates their lookups all the same, so the short one is given.
-    return light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0, false);
+    return light_visibility(light, lights, surface, center.to_light, false);
   }
   vec3 axis_x = shape.axis_x_ws;
   vec3 axis_y = shape.axis_y_ws;
@@ -148,7 +148,7 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
 #ifdef USE_SHADOW
   float visibility = shape_visibility(light, lights, shape, surface, center);
 #else
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0, true);
+  float visibility = light_visibility(light, lights, surface, center.to_light, true);
 #endif
   if (visibility <= 0.0) {
     return vec3(0.0);
