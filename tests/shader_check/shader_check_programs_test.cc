@@ -879,6 +879,43 @@ TEST(CheckProgram, AnErrorInAnIncludeHasNoOtherBehindTheInclude)
   EXPECT_NE(missing.find("x.frag:4: error: "), std::string::npos) << missing;
 }
 
+TEST(CheckProgram, AllErrorsOfAStageAreReportedInTheOrderOfTheCompiler)
+{
+  const std::string body =
+      "layout(location = 0) out vec4 c;\nvoid main() {\n  c = vec4(f() + oops_a);\n  c.x = oops_b;\n}\n";
+  const std::string head = "#version 450\n#include \"inner.glsl\"\n";
+  // As glslc has them. Behind an include that fails, what is wrong without its declarations is reported, too.
+  const std::string both = messages_of(check_texts(
+      {{"inner.glsl", "float f() { return oops; }\n"}, {"x.frag", head + body}}, for_target(CheckTarget::Vulkan12)));
+  EXPECT_EQ(both,
+            "inner.glsl:1: error: 'oops' : undeclared identifier [compile]\n"
+            "x.frag:5: error: 'oops_a' : undeclared identifier [compile]\n"
+            "x.frag:6: error: 'oops_b' : undeclared identifier [compile]\n");
+  const std::string missing = messages_of(
+      check_texts({{"x.frag", head + "#ifndef F\n#error no F\n#endif\n" + body}}, for_target(CheckTarget::Vulkan12)));
+  std::vector<std::string> places;
+  std::istringstream lines(missing);
+  for (std::string line; std::getline(lines, line);) {
+    places.push_back(line.substr(0, line.find(": error")));
+  }
+  EXPECT_EQ(places, (std::vector<std::string>{"x.frag:2", "x.frag:4", "x.frag:8", "x.frag:8", "x.frag:9"})) << missing;
+  // A syntax error ends the stage.
+  const std::string syntax = messages_of(check_texts(
+      {{"inner.glsl", "float f() { return 1.0 2.0; }\n"}, {"x.frag", head + body}}, for_target(CheckTarget::Vulkan12)));
+  EXPECT_EQ(std::ranges::count(syntax, '\n'), 1) << syntax;
+  EXPECT_EQ(syntax.find("inner.glsl:1: error: "), 0U) << syntax;
+}
+
+TEST(CheckProgram, AFileNumberThatIsTooGreatIsNoDefine)
+{
+  const std::string messages =
+      messages_of(check_texts({{"x.frag", "#version 450\n#line 5 99999999999999999999\nvoid main() { oops; }\n"}},
+                              for_target(CheckTarget::Vulkan12)));
+  EXPECT_EQ(messages,
+            "x.frag:2: error: '' : numeric literal too big [compile]\n"
+            "x.frag:5: error: 'oops' : undeclared identifier [compile]\n");
+}
+
 TEST(CheckProgram, NamesThatAreKeywordsElsewhereStayInMessages)
 {
   for (const std::string name : {"highp", "mediump", "highp_value", "not_highp"}) {

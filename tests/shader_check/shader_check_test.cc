@@ -359,9 +359,10 @@ TEST(CheckShader, UnguardedMathIsReported)
   for (const char *expression :
        {"color.x = acos(clamp(dot(x, y), -1.0, 1.0));", "color.x = acos(min(max(dot(x, y), -1.0), 1.0));",
         "color.x = asin(-min(1.0, max(-1.0, dot(x, y))));", "color.x = acos(0.5 * dot(x, y));",
-        "color.x = acos(min(dot(x, x), 1.0));", "color.x = sqrt(max(x.x - y.x, 0.0));", "color.x = sqrt(x.x);",
-        "color.x = sqrt(dot(x, x));", "color.x = x.x / max(length(x), 1e-6);", "color.x = 1.0 / (x.x + 2.0);",
-        "float l = length(x); color.x = l > 0.0 ? 1.0 / l : 0.0;",
+        "color.x = acos(min(dot(x, x), 1.0));", "color.x = acos(-min(dot(x, x), 1.0));",
+        "float d = -dot(x, x); color.x = asin(max(d, -1.0));", "color.x = sqrt(max(x.x - y.x, 0.0));",
+        "color.x = sqrt(x.x);", "color.x = sqrt(dot(x, x));", "color.x = x.x / max(length(x), 1e-6);",
+        "color.x = 1.0 / (x.x + 2.0);", "float l = length(x); color.x = l > 0.0 ? 1.0 / l : 0.0;",
         "vec3 d = x - y; if (dot(d, d) > 0.0) { color.xyz = normalize(d); }",
         "float d2 = dot(x, x); if (d2 == 0.0) { return; } color.x = inversesqrt(d2);",
         "color.x = sqrt(1.0 - clamp(x.x, 0.0, 1.0));", "color.x = pow(abs(dot(x, y)), 2.0);",
@@ -369,16 +370,40 @@ TEST(CheckShader, UnguardedMathIsReported)
     SCOPED_TRACE(expression);
     expect_clean(check_expression(expression));
   }
-  for (const char *expression :
-       {"color.x = acos(dot(x, y));", "color.x = acos(max(dot(x, y), 0.0));", "color.x = asin(-dot(x, y));",
-        "color.x = acos(dot(x, y) * 1.0);", "color.x = acos(-min(1.0, 2.0 * dot(x, y)));",
-        "float d = max(0.0, dot(x, y)); float e = -d; color.x = acos(e);", "color.x = asin(dot(x, y));",
-        "color.x = sqrt(1.0 - x.x * x.x);", "color.x = sqrt(dot(x, y));", "color.x = x.x / length(y);",
-        "color.x = x.x / (x.y - y.y);", "color.x /= distance(x, y);", "float d = dot(x, y); color.x = pow(d, 2.0);",
-        "color.xyz = normalize(x - y);", "color.xyz = normalize(cross(x, y));", "color.x = inversesqrt(dot(x, x));",
-        "color.x = log(x.x - 1.0);"}) {
+  for (const char *expression : {"color.x = acos(dot(x, y));",
+                                 "color.x = acos(max(dot(x, y), 0.0));",
+                                 "color.x = asin(-dot(x, y));",
+                                 "color.x = acos(dot(x, y) * 1.0);",
+                                 "color.x = acos(-min(1.0, 2.0 * dot(x, y)));",
+                                 "color.x = acos(min(dot(x, x), 2.0));",
+                                 "color.x = acos(-2.0 * min(dot(x, x), 1.0));",
+                                 "color.x = acos(max(dot(x, x), 0.0));",
+                                 "float d = max(0.0, dot(x, y)); float e = -d; color.x = acos(e);",
+                                 "color.x = asin(dot(x, y));",
+                                 "color.x = sqrt(1.0 - x.x * x.x);",
+                                 "color.x = sqrt(dot(x, y));",
+                                 "color.x = x.x / length(y);",
+                                 "color.x = x.x / (x.y - y.y);",
+                                 "color.x /= distance(x, y);",
+                                 "float d = dot(x, y); color.x = pow(d, 2.0);",
+                                 "color.xyz = normalize(x - y);",
+                                 "color.xyz = normalize(cross(x, y));",
+                                 "color.x = inversesqrt(dot(x, x));",
+                                 "color.x = log(x.x - 1.0);"}) {
     SCOPED_TRACE(expression);
     expect_one(check_expression(expression), Severity::Warning, "unguarded-math", "frag", 2);
+  }
+}
+
+TEST(CheckShader, AValueThatIsComputedFromItselfIsReadOnce)
+{
+  for (const char *body :
+       {"value = -value; color = vec4(acos(value));", "value = 2.0 * value; color = vec4(asin(value));",
+        "value = -other; other = -value; color = vec4(acos(-other));"}) {
+    SCOPED_TRACE(body);
+    const std::string globals = COLOR + "\nfloat value = 0.5;\nfloat other = 0.5;\n";
+    const std::string fragment = globals + "void main() { " + body + " }\n";
+    expect_clean(check("void main() { gl_Position = vec4(0.0); }\n", fragment));
   }
 }
 

@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
 
 namespace gnomon::shader_check {
 
@@ -45,42 +49,87 @@ bool is_rest_of_one(const FunctionFacts &facts, TIntermTyped *node)
          binary->getLeft()->getAsConstantUnion() != nullptr && is_share(facts.resolved(binary->getRight()));
 }
 
+/** An operation on a value: a minus, or one with a constant. */
+struct BoundStep {
+  TOperator op;
+  double constant;
+};
+
+/** A value, and the operations on it, the last one first. */
+struct BoundValue {
+  TIntermTyped *value;
+  std::vector<BoundStep> steps;
+};
+
 /**
  * The value that \a node is computed from without leaving a side of [-1, 1]: by a minus, a constant factor of at least
  * 1, or one bound. With two bounds, as of `min(max(x, -1.0), 1.0)`, the inner one is returned.
  */
-TIntermTyped *without_one_bound(const FunctionFacts &facts, TIntermTyped *node)
+BoundValue without_one_bound(const FunctionFacts &facts, TIntermTyped *node)
 {
   const auto is_constant = [](TIntermTyped *one) { return one->getAsConstantUnion() != nullptr; };
-  const auto keeps_size = [&](TIntermTyped *one) {
-    return is_constant(one) && std::abs(one->getAsConstantUnion()->getConstArray()[0].getDConst()) >= 1.0;
-  };
+  const auto constant = [](TIntermTyped *one) { return one->getAsConstantUnion()->getConstArray()[0].getDConst(); };
+  const auto keeps_size = [&](TIntermTyped *one) { return is_constant(one) && std::abs(constant(one)) >= 1.0; };
   bool has_bound = false;
-  for (node = facts.resolved(node);; node = facts.resolved(node)) {
+  std::vector<BoundStep> steps;
+  // A global variable may be computed from itself: `x = -x`.
+  std::set<TIntermTyped *> seen;
+  for (node = facts.resolved(node); seen.insert(node).second; node = facts.resolved(node)) {
     const TOperator op = operator_of(node);
     const std::vector<TIntermTyped *> parts = arguments_of(node);
     const bool is_bound = (op == glslang::EOpMax || op == glslang::EOpMin) && !has_bound;
     if (op == glslang::EOpNegative) {
+      steps.push_back({op, -1.0});
       node = parts[0];
     }
-    else if (is_bound && is_constant(parts[0]) != is_constant(parts[1])) {
-      node = parts[is_constant(parts[0]) ? 1 : 0];
-      has_bound = true;
-    }
-    else if (op == glslang::EOpMul && (keeps_size(parts[0]) || keeps_size(parts[1]))) {
-      node = parts[keeps_size(parts[0]) ? 1 : 0];
+    else if ((is_bound && is_constant(parts[0]) != is_constant(parts[1])) ||
+             (op == glslang::EOpMul && (keeps_size(parts[0]) || keeps_size(parts[1])))) {
+      const bool is_first = is_constant(parts[0]);
+      steps.push_back({op, constant(parts[is_first ? 0 : 1])});
+      node = parts[is_first ? 1 : 0];
+      has_bound |= is_bound;
     }
     else {
-      return node;
+      break;
     }
   }
+  return {node, std::move(steps)};
+}
+
+/** Whether the steps lead from each value that is 0 or more into [-1, 1]. */
+bool bound_square(const std::vector<BoundStep> &steps)
+{
+  double low = 0.0;
+  double high = std::numeric_limits<double>::infinity();
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    const double constant = step->constant;
+    switch (step->op) {
+      case glslang::EOpMin:
+        low = std::min(low, constant);
+        high = std::min(high, constant);
+        break;
+      case glslang::EOpMax:
+        low = std::max(low, constant);
+        high = std::max(high, constant);
+        break;
+      default:
+        low *= constant;
+        high *= constant;
+        if (constant < 0.0) {
+          std::swap(low, high);
+        }
+        break;
+    }
+  }
+  return low >= -1.0 && high <= 1.0;
 }
 
 /** The reason for which \a op may fail for \a argument, as far as the expression shows it; otherwise empty. */
 std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argument)
 {
   const bool is_arc = op == glslang::EOpAcos || op == glslang::EOpAsin;
-  TIntermTyped *value = is_arc ? without_one_bound(facts, argument) : facts.resolved(argument);
+  const BoundValue bound = is_arc ? without_one_bound(facts, argument) : BoundValue{facts.resolved(argument), {}};
+  TIntermTyped *value = bound.value;
   const TOperator source = operator_of(value);
   const bool is_difference = source == glslang::EOpSub;
   const bool is_dot = source == glslang::EOpDot;
@@ -93,11 +142,9 @@ std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argum
   const bool is_length = source == glslang::EOpLength || source == glslang::EOpDistance;
   switch (op) {
     case glslang::EOpAcos:
-    // The square of a vector has the other bound itself.
     case glslang::EOpAsin:
-      return is_dot && !(is_square && operator_of(facts.resolved(argument)) == glslang::EOpMin)
-                 ? "by rounding a scalar product may lie beyond [-1, 1]"
-                 : "";
+      return is_dot && !(is_square && bound_square(bound.steps)) ? "by rounding a scalar product may lie beyond [-1, 1]"
+                                                                 : "";
     case glslang::EOpSqrt:
     case glslang::EOpPow:
       return (is_difference && !is_rest_of_one(facts, value)) || (is_dot && !is_square) ? "it may be below 0" : "";

@@ -11,11 +11,13 @@ namespace gnomon::shader_check {
 
 namespace {
 
+/** All errors of a stage, as glslc has it: otherwise glslang ends a file at its first one. */
+constexpr auto all_errors = EShMessages(EShMsgDefault | EShMsgCascadingErrors);
 /** glslang prints columns from version 15 on. */
 #if GLSLANG_VERSION_GREATER_OR_EQUAL_TO(15, 0, 0)
-constexpr auto messages = EShMessages(EShMsgDefault | EShMsgDisplayErrorColumn);
+constexpr auto messages = EShMessages(all_errors | EShMsgDisplayErrorColumn);
 #else
-constexpr EShMessages messages = EShMsgDefault;
+constexpr EShMessages messages = all_errors;
 #endif
 
 /** Creates glslang's process-wide tables at the first use, because that takes some milliseconds. */

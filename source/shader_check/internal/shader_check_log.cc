@@ -74,7 +74,7 @@ bool is_count(std::string_view text)
   return scanner.take_number() && scanner.take(" compilation errors");
 }
 
-/** The line of the preamble that glslang's message names. */
+/** The line of the preamble that glslang's message names; empty: it has no such line. */
 std::string_view define_at(const StageSource &source, int line)
 {
   std::string_view rest = source.preamble();
@@ -96,12 +96,12 @@ std::optional<CompileMessage> compile_message(std::string_view line, StageSource
   for (std::size_t at = rest.find(':'); at != std::string_view::npos; at = rest.find(':', at + 1)) {
     gpu::TextScanner behind(rest.substr(at));
     const auto place = take_line(behind);
-    if (place && rest.substr(0, at) == "-1" && !source.preamble().empty()) {
+    // The number of the preamble, and that which glslang reads a `#line` with a too great number of a file as.
+    const std::string_view define =
+        place && rest.substr(0, at) == "-1" ? define_at(source, place->first) : std::string_view();
+    if (!define.empty()) {
       return CompileMessage{
-          *severity,
-          "compile",
-          {},
-          fmt::format("'{}': {}", define_at(source, place->first), without_space_at_end(behind.rest()))};
+          *severity, "compile", {}, fmt::format("'{}': {}", define, without_space_at_end(behind.rest()))};
     }
     if (place) {
       return CompileMessage{*severity, "compile", source.position(rest.substr(0, at), place->first, place->second),
@@ -144,24 +144,6 @@ void name_rule(CompileMessage &message)
 bool is_consequence(const CompileMessage &message)
 {
   return message.text.starts_with("'' : compilation terminated") || message.text.starts_with("'' : missing #endif");
-}
-
-/**
- * Erases the errors that only follow from the first one. glslang ends the file at an error, and goes on behind the
- * `#include` of that file, where the rest of the file is missing. Errors about missing files are kept.
- */
-void erase_errors_of_includers(std::vector<CompileMessage> &messages)
-{
-  const auto is_error = [](const CompileMessage &message) { return message.severity == Severity::Error; };
-  const auto first = std::ranges::find_if(messages, is_error);
-  if (first == messages.end()) {
-    return;
-  }
-  const std::size_t file = first->position.file;
-  const auto follows = [&](const CompileMessage &message) {
-    return is_error(message) && message.position.file != file && message.rule != "include";
-  };
-  messages.erase(std::remove_if(std::next(first), messages.end(), follows), messages.end());
 }
 
 }  // namespace
@@ -210,7 +192,6 @@ std::vector<CompileMessage> compile_messages(std::string_view log, StageSource &
   if (has_cause) {
     std::erase_if(messages, is_consequence);
   }
-  erase_errors_of_includers(messages);
   return messages;
 }
 

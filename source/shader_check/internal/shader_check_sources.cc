@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -391,14 +392,14 @@ std::string_view StageSource::unmarked(std::size_t file, std::string_view text)
 SourcePosition StageSource::position(std::string_view name, int line, int column)
 {
   SourcePosition position{0, line < 0 ? 0 : std::max(line, 1), std::max(column, 0)};
-  std::size_t number = 0;
+  std::int64_t number = 0;
   if (const std::optional<std::size_t> file = file_named(name)) {
     position.file = *file < files_.size() ? *file : 0;
   }
   else if (std::from_chars(name.data(), name.data() + name.size(), number).ptr == name.data() + name.size()) {
     // The number of a string, or one that a `#line` of the user gave.
     const auto file = numbers_.find(std::string(name));
-    position.file = includer_ == nullptr     ? (number < files_.size() ? number : 0)
+    position.file = includer_ == nullptr ? (number > 0 && std::size_t(number) < files_.size() ? std::size_t(number) : 0)
                     : file != numbers_.end() ? file->second
                                              : 0;
   }
