@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 namespace gnomon::shader_check {
 
@@ -213,9 +217,31 @@ static TargetChoice target_of(const std::vector<Program::File> &sorted,
   return choose_target(sorted, noted, options.include_folders);
 }
 
+/** A carriage return without a line feed also ends a line. \return empty: \a text has none */
+static std::optional<std::string> with_line_feeds(std::string_view text)
+{
+  std::optional<std::string> result;
+  for (std::size_t at = text.find('\r'); at != std::string_view::npos; at = text.find('\r', at + 1)) {
+    if (!text.substr(at + 1).starts_with('\n')) {
+      result = result ? std::move(result) : std::string(text);
+      (*result)[at] = '\n';
+    }
+  }
+  return result;
+}
+
 ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files, const ProgramOptions &options)
 {
   ProgramCheck result;
+  std::map<std::string, std::optional<std::string>, std::less<>> with_feeds;
+  const gpu::ShaderFiles texts = [&](std::string_view path) {
+    const std::optional<std::string_view> text = files(path);
+    auto known = with_feeds.find(path);
+    if (text && known == with_feeds.end()) {
+      known = with_feeds.emplace(path, with_line_feeds(*text)).first;
+    }
+    return text && known->second ? std::optional<std::string_view>(*known->second) : text;
+  };
   with_large_stack([&] {
     std::vector<Program::File> sorted = program.files;
     std::ranges::stable_sort(sorted, {}, &Program::File::stage);
@@ -224,7 +250,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
     settings.options.levels = options.levels;
     settings.options.is_strict = options.is_strict;
     const auto second = std::ranges::adjacent_find(std::as_const(sorted), {}, &Program::File::stage);
-    TargetChoice choice = target_of(sorted, second, files, options, tried);
+    TargetChoice choice = target_of(sorted, second, texts, options, tried);
     result.target = choice.target;
     result.target_reason = std::move(choice.reason);
     settings.options.target = result.target;
@@ -236,8 +262,8 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
                                    "the target is {}",
                                    second->path, to_string(file.stage), to_string(result.target)));
       }
-      if (const std::optional<std::string_view> text = files(file.path)) {
-        checker.compile(std::make_unique<StageSource>(file.stage, file.path, *text, program.defines, files,
+      if (const std::optional<std::string_view> text = texts(file.path)) {
+        checker.compile(std::make_unique<StageSource>(file.stage, file.path, *text, program.defines, texts,
                                                       options.include_folders));
       }
       else {

@@ -906,6 +906,20 @@ TEST(CheckProgram, AllErrorsOfAStageAreReportedInTheOrderOfTheCompiler)
   EXPECT_EQ(syntax.find("inner.glsl:1: error: "), 0U) << syntax;
 }
 
+TEST(CheckProgram, CarriageReturnsAloneEndLines)
+{
+  const Texts files = {
+      {"lib.glsl", "// shader-check: unguarded-math=error\rfloat f(vec2 a) { return acos(dot(a, a)); }\r"},
+      {"x.frag",
+       "#version 330\r#include \"lib.glsl\"\rin vec2 uv; // a comment\runiform float k;\r"
+       "out vec4 c;\rvoid main() { c = vec4(f(uv)) * k; }\r"}};
+  const ProgramCheck check = check_texts(files);
+  EXPECT_EQ(check.target, CheckTarget::OpenGl) << check.target_reason;
+  if (left_out_rules(CheckTarget::OpenGl).empty()) {
+    EXPECT_EQ(messages_of(check).find("lib.glsl:2: error: acos of "), 0U) << messages_of(check);
+  }
+}
+
 TEST(CheckProgram, AFileNumberThatIsTooGreatIsNoDefine)
 {
   const std::string messages =
