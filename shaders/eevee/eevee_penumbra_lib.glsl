@@ -18,54 +18,60 @@ const vec2 PENUMBRA_SEARCH_STEP = GOLDEN_TURN / PENUMBRA_SEARCH_RATIO;
 /** Number of lookups for the end of a caster between two radii. */
 const int PENUMBRA_EDGE_TAPS = 4;
 
+/** A receiver and a lamp with an extent. */
+struct PenumbraReceiver {
+  LightData light;
+  Surface surface;
+  vec3 to_light;
 #ifdef USE_SHADOW_CUBE
-/** The receiver of penumbra_visibility, if the light's shadow is a cube. */
-CubeReceiver penumbra_cube;
+  /** If the light's shadow is a cube. */
+  CubeReceiver cube;
 #endif
+};
 
 /** Gap of the caster at \a offset from the receiver, \see ShadowPlace; 0 if there is none. */
-float shadow_gap(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset)
+float shadow_gap(PenumbraReceiver receiver, const int lights, vec3 offset)
 {
 #ifdef USE_SHADOW_CUBE
-  if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_gap(penumbra_cube, surface, offset);
+  if (lights != LIGHTS_WITH_MAPS && receiver.light.shadow_kind == SHADOW_CUBE) {
+    return shadow_cube_gap(receiver.cube, receiver.surface, offset);
   }
 #endif
 #ifdef USE_SHADOW_MAP
-  if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_gap(light.shadow_index, surface, light, to_light, offset);
+  if (lights != LIGHTS_WITH_CUBES && receiver.light.shadow_kind == SHADOW_MAP) {
+    return shadow_map_gap(receiver.light.shadow_index, receiver.surface, receiver.light, receiver.to_light, offset);
   }
 #endif
   return 0.0;
 }
 
 /** Visibility of the light at \a offset from the receiver, \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */
-float shadow_at(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset, float least_gap)
+float shadow_at(PenumbraReceiver receiver, const int lights, vec3 offset, float least_gap)
 {
 #ifdef USE_SHADOW_CUBE
-  if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(penumbra_cube, surface, offset, least_gap, false);
+  if (lights != LIGHTS_WITH_MAPS && receiver.light.shadow_kind == SHADOW_CUBE) {
+    return shadow_cube_visibility(receiver.cube, receiver.surface, offset, least_gap, false);
   }
 #endif
 #ifdef USE_SHADOW_MAP
-  if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(light.shadow_index, surface, to_light, offset, least_gap, false);
+  if (lights != LIGHTS_WITH_CUBES && receiver.light.shadow_kind == SHADOW_MAP) {
+    return shadow_map_visibility(receiver.light.shadow_index, receiver.surface, receiver.to_light, offset, least_gap, false);
   }
 #endif
   return 1.0;
 }
 
 /** x: edge of a texel at the receiver, metres. y: 1.5 times the largest gap, or more. */
-vec2 shadow_search(LightData light, const int lights, Surface surface, vec3 to_light)
+vec2 shadow_search(PenumbraReceiver receiver, const int lights)
 {
 #ifdef USE_SHADOW_CUBE
-  if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_search(light.shadow_index, surface, light);
+  if (lights != LIGHTS_WITH_MAPS && receiver.light.shadow_kind == SHADOW_CUBE) {
+    return shadow_cube_search(receiver.light.shadow_index, receiver.surface, receiver.light);
   }
 #endif
 #ifdef USE_SHADOW_MAP
-  if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_search(light.shadow_index, surface, light, to_light);
+  if (lights != LIGHTS_WITH_CUBES && receiver.light.shadow_kind == SHADOW_MAP) {
+    return shadow_map_search(receiver.light.shadow_index, receiver.surface, receiver.light, receiver.to_light);
   }
 #endif
   return vec2(0.0);
@@ -89,15 +95,19 @@ vec2 pixel_turn()
  */
 float penumbra_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float sun_drop)
 {
+  PenumbraReceiver receiver;
+  receiver.light = light;
+  receiver.surface = surface;
+  receiver.to_light = to_light;
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS) {
-    penumbra_cube = cube_receiver(light.shadow_index, surface, light, to_light);
+    receiver.cube = cube_receiver(light.shadow_index, surface, light, to_light);
   }
 #endif
   vec2 turn = pixel_turn();
   // The radii of the lookups for casters are a geometric series, from the outermost caster inwards to a texel, because the nearest and
   // the farthest caster may have penumbrae of very different widths.
-  vec2 search = shadow_search(light, lights, surface, to_light);
+  vec2 search = shadow_search(receiver, lights);
   float innermost = search.x * inversesqrt(max(dot(axis_x, axis_x), dot(axis_y, axis_y)));
   vec2 tap = turn * (light.kind == LIGHT_SUN ? search.y : min(search.y, 15.0));
   float radius = length(tap);
@@ -107,7 +117,7 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   vec2 outermost = vec2(0.0);
   int i = 0;
   do {
-    float tap_gap = shadow_gap(light, lights, surface, to_light, tap.x * axis_x + tap.y * axis_y);
+    float tap_gap = shadow_gap(receiver, lights, tap.x * axis_x + tap.y * axis_y);
     if (tap_gap > 0.0 && radius <= PENUMBRA_REACH * tap_gap) {
       outermost = gap > 0.0 ? outermost : tap;
       gap = gap > 0.0 ? min(gap, tap_gap) : tap_gap;
@@ -123,7 +133,7 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
     do {
       float middle = 0.5 * (inside + outside);
       tap = outermost * middle;
-      float tap_gap = shadow_gap(light, lights, surface, to_light, tap.x * axis_x + tap.y * axis_y);
+      float tap_gap = shadow_gap(receiver, lights, tap.x * axis_x + tap.y * axis_y);
       bool is_caster = tap_gap > 0.0 && length(tap) <= PENUMBRA_REACH * tap_gap;
       gap = is_caster ? min(gap, tap_gap) : gap;
       inside = is_caster ? middle : inside;
@@ -145,7 +155,7 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
     // A caster with a smaller gap covers a point beyond the lamp there. It may be behind the receiver. Not for suns: with those of a
     // world, the picture of one sample has more error (scene world, RMSE 0.0849 to 0.0855).
     float least_gap = light.kind == LIGHT_SUN ? 0.0 : length(point) / PENUMBRA_REACH;
-    sum += shadow_at(light, lights, surface, to_light, point.x * axis_x + point.y * axis_y, least_gap);
+    sum += shadow_at(receiver, lights, point.x * axis_x + point.y * axis_y, least_gap);
   } while (++i < tap_count);
   return sum / float(tap_count);
 }
