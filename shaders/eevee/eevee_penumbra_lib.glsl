@@ -10,8 +10,8 @@ const int PENUMBRA_SEARCH_TAPS = 17;
 const int PENUMBRA_TAPS = 20;
 /** Casters at up to this multiple of their penumbra's half width are evaluated: those next to the lookup may be nearer. */
 const float PENUMBRA_REACH = 3.0;
-/** Cosine and sine of the golden angle. */
-const vec2 GOLDEN_TURN = vec2(-0.7373688, 0.6754903);
+/** Rotation by the golden angle, as cosine and sine. */
+const vec2 GOLDEN_TURN = vec2(cos(GOLDEN_ANGLE), sin(GOLDEN_ANGLE));
 /** From a lookup for casters to the next one: a turn by the golden angle, and a radius that is smaller by this factor. */
 const float PENUMBRA_SEARCH_RATIO = 1.6;
 const vec2 PENUMBRA_SEARCH_STEP = GOLDEN_TURN / PENUMBRA_SEARCH_RATIO;
@@ -24,7 +24,7 @@ struct PenumbraReceiver {
   Surface surface;
   vec3 to_light;
 #ifdef USE_SHADOW_CUBE
-  /** If the light's shadow is a cube. */
+  /** It is set if the light's shadow is a cube. */
   CubeReceiver cube;
 #endif
 };
@@ -146,7 +146,7 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   float sum = 0.0;
   i = 0;
   do {
-    // The points of vogel_disk, turned.
+    // The points of vogel_disk, turned. A rotation from point to point needs no cosine and sine.
     vec2 point = sqrt((float(i) + 0.5) / float(PENUMBRA_TAPS)) * turn;
     turn = complex_product(turn, GOLDEN_TURN);
     // For a sun, points of equal solid angles: 1 - cos is proportional to the square of the radius.

@@ -238,12 +238,12 @@ int filter_of(ShadowCubeData cube)
   return cube.faces_and_filter >> SHADOW_CUBE_FACE_BITS;
 }
 
-/** A receiver and its cube: what all lookups there share. llvmpipe does not move it out of loops over lookups. */
+/** The values that all lookups of a receiver in its cube share. llvmpipe does not move them out of loops over lookups. */
 struct CubeReceiver {
   ShadowCubeData cube;
-  /** From the light, with the normal offset. */
+  /** Position of the receiver with the normal offset, from the light, metres. */
   vec3 from_light;
-  /** Of the receiver's plane n · p = c: the near plane's distance divided by c. */
+  /** The near plane's distance divided by c, where the receiver's plane is n · p = c. */
   float per_metre;
   /** Normal offset, texels. */
   float offset_texels;
@@ -255,6 +255,7 @@ struct CubeReceiver {
   bool is_in_range;
 };
 
+/** \a index: of the cube. \a to_light: unit vector. */
 CubeReceiver cube_receiver(int index, Surface surface, LightData light, vec3 to_light)
 {
   CubeReceiver receiver;

@@ -217,13 +217,15 @@ static TargetChoice target_of(const std::vector<Program::File> &sorted,
   return choose_target(sorted, noted, options.include_folders);
 }
 
-/** A carriage return without a line feed also ends a line. \return empty: \a text has none */
+/** \a text with a line feed for each carriage return that none follows. Both end lines. \return empty: it has none */
 static std::optional<std::string> with_line_feeds(std::string_view text)
 {
   std::optional<std::string> result;
   for (std::size_t at = text.find('\r'); at != std::string_view::npos; at = text.find('\r', at + 1)) {
     if (!text.substr(at + 1).starts_with('\n')) {
-      result = result ? std::move(result) : std::string(text);
+      if (!result) {
+        result = text;
+      }
       (*result)[at] = '\n';
     }
   }

@@ -856,7 +856,7 @@ TEST(CheckProgram, TheTakenLineDirectivesCount)
   }
 }
 
-TEST(CheckProgram, AnErrorInAnIncludeHasNoOtherBehindTheInclude)
+TEST(CheckProgram, AnErrorInAnIncludeIsNoErrorOfItsIncluders)
 {
   const std::string head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n";
   const std::string tail = "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(f()); }\n";
@@ -870,7 +870,7 @@ TEST(CheckProgram, AnErrorInAnIncludeHasNoOtherBehindTheInclude)
     EXPECT_NE(messages.find("'oops' : undeclared identifier"), std::string::npos) << messages;
     EXPECT_EQ(messages.find("x.frag"), std::string::npos) << messages;
   }
-  // Files that are missing are so without the error before.
+  // A missing file does not hide the next one.
   const std::string missing =
       messages_of(check_texts({{"inner.glsl", "#include \"a.glsl\"\n"},
                                {"x.frag", head + "#include \"inner.glsl\"\n#include \"b.glsl\"\n" + tail}},
@@ -884,7 +884,7 @@ TEST(CheckProgram, AllErrorsOfAStageAreReportedInTheOrderOfTheCompiler)
   const std::string body =
       "layout(location = 0) out vec4 c;\nvoid main() {\n  c = vec4(f() + oops_a);\n  c.x = oops_b;\n}\n";
   const std::string head = "#version 450\n#include \"inner.glsl\"\n";
-  // As glslc has them. Behind an include that fails, what is wrong without its declarations is reported, too.
+  // glslc reports the same errors. After an include that fails, errors follow from its missing declarations.
   const std::string both = messages_of(check_texts(
       {{"inner.glsl", "float f() { return oops; }\n"}, {"x.frag", head + body}}, for_target(CheckTarget::Vulkan12)));
   EXPECT_EQ(both,

@@ -96,7 +96,7 @@ std::optional<CompileMessage> compile_message(std::string_view line, StageSource
   for (std::size_t at = rest.find(':'); at != std::string_view::npos; at = rest.find(':', at + 1)) {
     gpu::TextScanner behind(rest.substr(at));
     const auto place = take_line(behind);
-    // The number of the preamble, and that which glslang reads a `#line` with a too great number of a file as.
+    // The preamble has the number -1. glslang also reads a too great number of a file in a `#line` as -1.
     const std::string_view define =
         place && rest.substr(0, at) == "-1" ? define_at(source, place->first) : std::string_view();
     if (!define.empty()) {
