@@ -164,7 +164,7 @@ TEST_F(ShaderFilesTest, AMistakeBehindWhichTheCompilerCrashesHasItsLine)
 TEST_F(ShaderFilesTest, AFileThatIsGivenTwiceIsCheckedOnce)
 {
   write("bad.frag", fragment_head + "void main() { c = oops; }\n");
-  EXPECT_NE(check("bad.frag ./bad.frag").out.find("1 programs, 1 variants, Vulkan 1.2: 1 errors"), std::string::npos);
+  EXPECT_NE(check("bad.frag ./bad.frag").out.find("1 programs, 1 variants"), std::string::npos);
   const Finished missing = check("missing.frag");
   EXPECT_EQ(missing.out.find("has no version"), std::string::npos) << missing.out;
 }
