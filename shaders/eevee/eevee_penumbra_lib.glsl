@@ -45,17 +45,17 @@ float shadow_gap(PenumbraReceiver receiver, const int lights, vec3 offset)
   return 0.0;
 }
 
-/** Visibility of the light at \a offset from the receiver, \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */
-float shadow_at(PenumbraReceiver receiver, const int lights, vec3 offset, float least_gap)
+/** Visibility of the light at \a offset from the receiver, \see ShadowPlace. \a least_gap, \a is_receiver: \see shadow_cube_visibility. */
+float shadow_at(PenumbraReceiver receiver, const int lights, vec3 offset, float least_gap, const bool is_receiver)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && receiver.light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(receiver.cube, receiver.surface, offset, least_gap, false);
+    return shadow_cube_visibility(receiver.cube, receiver.surface, offset, least_gap, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && receiver.light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(receiver.light.shadow_index, receiver.surface, receiver.to_light, offset, least_gap, false);
+    return shadow_map_visibility(receiver.light.shadow_index, receiver.surface, receiver.to_light, offset, least_gap, is_receiver);
   }
 #endif
   return 1.0;
@@ -110,52 +110,48 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   vec2 search = shadow_search(receiver, lights);
   float innermost = search.x * inversesqrt(max(dot(axis_x, axis_x), dot(axis_y, axis_y)));
   vec2 tap = turn * (light.kind == LIGHT_SUN ? search.y : min(search.y, 15.0));
-  float radius = length(tap);
   // The smallest gap. The map shows the sides of casters that face the lamp. The edge of such a side casts the penumbra, and has smaller
   // gaps than its middle. Near casters also have the most visible edges.
   float gap = 0.0;
+  // A round caster ends between the outermost lookup that meets it and the next radius. There it has its smallest gap. The lookups for
+  // the end follow the search in one loop: llvmpipe would evaluate a second loop once for receivers without casters.
   vec2 outermost = vec2(0.0);
+  float inside = 1.0;
+  float outside = PENUMBRA_SEARCH_RATIO;
+  bool is_search = true;
+  int edge_taps = 0;
   int i = 0;
   do {
-    float tap_gap = shadow_gap(receiver, lights, tap.x * axis_x + tap.y * axis_y);
-    if (tap_gap > 0.0 && radius <= PENUMBRA_REACH * tap_gap) {
-      outermost = gap > 0.0 ? outermost : tap;
-      gap = gap > 0.0 ? min(gap, tap_gap) : tap_gap;
-    }
+    float middle = 0.5 * (inside + outside);
+    vec2 place = is_search ? tap : outermost * middle;
+    float place_gap = shadow_gap(receiver, lights, place.x * axis_x + place.y * axis_y);
+    bool is_caster = place_gap > 0.0 && length(place) <= PENUMBRA_REACH * place_gap;
+    outermost = is_search && is_caster && gap == 0.0 ? place : outermost;
+    gap = is_caster ? (gap > 0.0 ? min(gap, place_gap) : place_gap) : gap;
+    inside = !is_search && is_caster ? middle : inside;
+    outside = is_search || is_caster ? outside : middle;
+    edge_taps += is_search ? 0 : 1;
     tap = complex_product(tap, PENUMBRA_SEARCH_STEP);
-    radius = length(tap);
-  } while (++i < PENUMBRA_SEARCH_TAPS && radius > innermost);
-  // A round caster ends between the outermost lookup that meets it and the next radius. There it has its smallest gap.
-  if (gap > 0.0) {
-    float inside = 1.0;
-    float outside = PENUMBRA_SEARCH_RATIO;
-    i = 0;
-    do {
-      float middle = 0.5 * (inside + outside);
-      tap = outermost * middle;
-      float tap_gap = shadow_gap(receiver, lights, tap.x * axis_x + tap.y * axis_y);
-      bool is_caster = tap_gap > 0.0 && length(tap) <= PENUMBRA_REACH * tap_gap;
-      gap = is_caster ? min(gap, tap_gap) : gap;
-      inside = is_caster ? middle : inside;
-      outside = is_caster ? outside : middle;
-    } while (++i < PENUMBRA_EDGE_TAPS);
-  }
-  // Without a caster, one lookup at the receiver.
-  int tap_count = gap > 0.0 ? PENUMBRA_TAPS : 1;
+    is_search = is_search && ++i < PENUMBRA_SEARCH_TAPS && length(tap) > innermost;
+  } while (is_search || (gap > 0.0 && edge_taps < PENUMBRA_EDGE_TAPS));
   float sun_scale = gap * (1.0 - sun_drop) * inversesqrt(max(2.0 - sun_drop, 1.0));
   float sum = 0.0;
-  i = 0;
-  do {
-    // The points of vogel_disk, turned. A rotation from point to point needs no cosine and sine.
-    vec2 point = sqrt((float(i) + 0.5) / float(PENUMBRA_TAPS)) * turn;
-    turn = complex_product(turn, GOLDEN_TURN);
-    // For a sun, points of equal solid angles: 1 - cos is proportional to the square of the radius.
-    float drop = sun_drop * dot(point, point);
-    point *= sun_scale * sqrt(max(2.0 - drop, 1.0)) / max(1.0 - drop, 1e-6);
-    // A caster with a smaller gap covers a point beyond the lamp there. It may be behind the receiver. Not for suns: with those of a
-    // world, the picture of one sample has more error (scene world, RMSE 0.0849 to 0.0855).
-    float least_gap = light.kind == LIGHT_SUN ? 0.0 : length(point) / PENUMBRA_REACH;
-    sum += shadow_at(receiver, lights, point.x * axis_x + point.y * axis_y, least_gap);
-  } while (++i < tap_count);
-  return sum / float(tap_count);
+  if (gap > 0.0) {
+    i = 0;
+    do {
+      // The points of vogel_disk, turned. A rotation from point to point needs no cosine and sine.
+      vec2 point = sqrt((float(i) + 0.5) / float(PENUMBRA_TAPS)) * turn;
+      turn = complex_product(turn, GOLDEN_TURN);
+      // For a sun, points of equal solid angles: 1 - cos is proportional to the square of the radius.
+      float drop = sun_drop * dot(point, point);
+      point *= sun_scale * sqrt(max(2.0 - drop, 1.0)) / max(1.0 - drop, 1e-6);
+      // A caster with a smaller gap covers a point beyond the lamp there. It may be behind the receiver. Not for suns: with those of a
+      // world, the picture of one sample has more error (scene world, RMSE 0.0849 to 0.0855).
+      float least_gap = light.kind == LIGHT_SUN ? 0.0 : length(point) / PENUMBRA_REACH;
+      sum += shadow_at(receiver, lights, point.x * axis_x + point.y * axis_y, least_gap, false);
+    } while (++i < PENUMBRA_TAPS);
+  }
+  // Without a caster, the lamp has the visibility of its centre. A blend of the texels around the receiver would show those of its own
+  // surface, or of what it touches, as dark lines.
+  return gap > 0.0 ? sum / float(PENUMBRA_TAPS) : shadow_at(receiver, lights, vec3(0.0), 0.0, true);
 }

@@ -247,11 +247,9 @@ struct CubeReceiver {
   float per_metre;
   /** Normal offset, texels. */
   float offset_texels;
-  /** Lower left corner and extent of the part of each face that its layer holds, of 1. */
-  vec2 crop_corner;
-  vec2 crop_extent;
-  /** Half of the layer's edge for each tangent of the angle from the face's axis, of 1. */
-  float uv_scale;
+  /** Texels for each tangent of the angle from a face's axis, and the texel of the axis. */
+  vec2 texel_scale;
+  vec2 axis_texel;
   bool is_in_range;
 };
 
@@ -273,10 +271,11 @@ CubeReceiver cube_receiver(int index, Surface surface, LightData light, vec3 to_
   receiver.from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
   receiver.per_metre = slope_quotient(near, dot(surface.geometric_normal_ws, receiver.from_light));
   receiver.offset_texels = normal_offset / max(texel, 1e-30);
+  // The part of each face that its layer holds.
   vec4 crop = unpackUnorm4x8(receiver.cube.crop);
-  receiver.crop_corner = crop.xy;
-  receiver.crop_extent = crop.zw - crop.xy;
-  receiver.uv_scale = 0.5 * cube_uv_scale(float(receiver.cube.size_px));
+  vec2 face_px = float(receiver.cube.size_px) / max(crop.zw - crop.xy, vec2(1.0 / 255.0));
+  receiver.texel_scale = 0.5 * cube_uv_scale(float(receiver.cube.size_px)) * face_px;
+  receiver.axis_texel = (0.5 - crop.xy) * face_px - 0.5;
   receiver.is_in_range = w <= receiver.cube.far;
   return receiver;
 }
@@ -288,21 +287,20 @@ ShadowPlace cube_place(CubeReceiver receiver, Surface surface, vec3 offset)
   ShadowCubeData cube = receiver.cube;
   int face = cube_face(receiver.from_light + offset);
   vec3 p = cube_face_project(face, receiver.from_light + offset);
-  float size = float(cube.size_px);
   float per_z = 1.0 / max(p.z, 1e-30);
-  vec2 uv = (p.xy * (per_z * receiver.uv_scale) + 0.5 - receiver.crop_corner) / max(receiver.crop_extent, vec2(1.0 / 255.0));
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
   ShadowPlace place;
   place.receiver_depth = cube.near * per_z;
-  place.plane.texel = uv * size - 0.5;
+  place.plane.texel = p.xy * per_z * receiver.texel_scale + receiver.axis_texel;
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * receiver.per_metre * per_z;
-  place.plane.slope = n.xy * (receiver.per_metre / (receiver.uv_scale * size)) * receiver.crop_extent;
+  place.plane.slope = n.xy * (receiver.per_metre / receiver.texel_scale);
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
   place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope, receiver.offset_texels);
   place.layer = cube.layer + face;
   // Beyond the part of the face that its layer holds, there is no surface of the picture.
-  bool is_in_crop = all(lessThanEqual(abs(uv - 0.5), vec2(0.5)));
+  float half_px = 0.5 * float(cube.size_px);
+  bool is_in_crop = all(lessThanEqual(abs(place.plane.texel + (0.5 - half_px)), vec2(half_px)));
   place.is_covered = receiver.is_in_range && (cube.faces_and_filter >> face & 1) != 0 && p.z > 0.0 && is_in_crop;
   return place;
 }

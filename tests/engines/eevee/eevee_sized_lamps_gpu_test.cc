@@ -537,6 +537,76 @@ TEST_F(PenumbraSceneTest, BelowABallThatHidesTheLampIsLittleLight)
   }
 }
 
+/** Surfaces that nothing hides from a lamp with a size, in pictures of one sample. */
+class LitPenumbraTest : public test::GpuDeviceTest {
+ protected:
+  /** The least quotient of a pixel with and without shadows. The truth is 1. */
+  float least_visibility(const scene::PlacedCamera &camera, glm::ivec2 size_px)
+  {
+    const test::Picture shadowed = test::Renderer(*device, scene, size_px).picture(camera);
+    const test::Picture lit =
+        test::Renderer(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}}).picture(camera);
+    EXPECT_EQ(shadowed.non_finite_count() + lit.non_finite_count(), 0U);
+    float least = 1.0F;
+    for (std::size_t i = 0; i < lit.pixels.size(); i++) {
+      EXPECT_GT(lit.pixels[i].r, 0.0F) << i;
+      least = std::min(least, shadowed.pixels[i].r / lit.pixels[i].r);
+    }
+    return least;
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Material> material = test::add_material(scene, glm::vec3(1.0F));
+};
+
+TEST_F(LitPenumbraTest, FoldsAlongTheLightHaveNoDarkLines)
+{
+  // Heights differ only across the folds, and the light comes along them, so that each point sees all of the sun.
+  constexpr int rows = 120;
+  scene::Mesh folds;
+  folds.material = material;
+  for (int y = 0; y <= rows; y++) {
+    const double across = 2.0 * y / rows - 1.0;
+    const double phase = 20.0 * pi * across;
+    for (const double along : {-1.0, 1.0}) {
+      folds.positions.emplace_back(along, across, 0.03 * std::cos(phase));
+      folds.normals.push_back(glm::normalize(glm::vec3(0.0F, float(0.6 * pi * std::sin(phase)), 1.0F)));
+    }
+    if (y < rows) {
+      const auto first = std::uint32_t(2 * y);
+      for (const std::uint32_t i : {0U, 1U, 3U, 0U, 3U, 2U}) {
+        folds.indices.push_back(first + i);
+      }
+    }
+  }
+  test::add_object(scene, scene.add(std::move(folds)), glm::scale(glm::dmat4(1.0), glm::dvec3(100.0)));
+  scene::Lamp sun;
+  sun.kind = scene::LampKind::Sun;
+  sun.angle = 0.00925F;
+  sun.shadow.size = 512;
+  const double elevation = 0.26;
+  test::add_lamp(scene, sun, turned_to({std::cos(elevation), 0.0, std::sin(elevation)}, {0, 0, 0}));
+  EXPECT_GT(least_visibility(camera_above(200.0, 60.0), {128, 128}), 0.9F);
+}
+
+TEST_F(LitPenumbraTest, TheGroundAtTheFootOfALitWallHasNoDarkDashes)
+{
+  const auto square = test::add_square_mesh(scene, material);
+  test::add_object(scene, square, glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)));
+  // The foot of the wall is oblique to the rows of the map.
+  const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.3, glm::dvec3(0, 0, 1));
+  const glm::dmat4 upright = glm::rotate(turned, 0.5 * pi, glm::dvec3(0, 1, 0));
+  test::add_object(scene, square, glm::scale(upright, glm::dvec3(1.0, 4.0, 1.0)));
+  scene::Lamp lamp;
+  lamp.kind = scene::LampKind::Point;
+  lamp.radius = 0.1F;
+  test::add_lamp(scene, lamp, glm::translate(turned, {2.0, 0.0, 2.0}));
+  // Columns along the foot of the wall, rows from it to 0.04 m in front of it.
+  scene::PlacedCamera camera = camera_above(0.8, 0.32, 1.0 / 16.0);
+  camera.world_from_camera = glm::rotate(glm::translate(turned, {0.02, 0.0, 0.8}), 0.5 * pi, glm::dvec3(0, 0, 1));
+  EXPECT_GT(least_visibility(camera, {256, 16}), 0.9F);
+}
+
 using SlowPenumbraTest = PenumbraTest;
 
 TEST_P(SlowPenumbraTest, OfSamplesIsAsWideAsSimilarTrianglesSay)
