@@ -21,6 +21,7 @@ void main()
 {
   write_depth_on_plane(0.125);
   Surface surface = make_surface();
+  place_on_ray(surface);
   LightData light = light_data.lights[tinted_light];
   int first = light.shadow_index;
   int count = min(shadow.maps[first].cascade_count, 4);
