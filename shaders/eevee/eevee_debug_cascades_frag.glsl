@@ -29,7 +29,8 @@ void main()
   float open = 1.0;
   for (int i = 0; i < count && open > 0.0; i++) {
     float normal_offset;
-    float coverage = map_coverage(map_receiver(shadow.maps[first + i], surface, -light.forward_ws, normal_offset));
+    ShadowMapData map = shadow.maps[first + i];
+    float coverage = map_coverage(map, map_receiver(map, surface, -light.forward_ws, normal_offset));
     float share = open * cascade_share(i == count - 1, coverage);
     sum += share * CASCADE_TINTS[i];
     open -= share;

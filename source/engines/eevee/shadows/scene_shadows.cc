@@ -220,7 +220,8 @@ void SceneShadows::finish()
 
 /**
  * Give the maps 16-bit depths if they may have them and all have a small error. Maps with 32 bits keep them, so that
- * no movement of the camera changes the format again and again.
+ * no movement of the camera changes the format again and again. Maps that are fitted to depths do not, because a
+ * picture must not depend on the pictures before it.
  */
 void SceneShadows::choose_map_format()
 {
@@ -228,17 +229,19 @@ void SceneShadows::choose_map_format()
   const bool has_long_maps = maps.texture() && maps.format() == gpu::Format::Depth32F;
   scene::Bounds surfaces_ws = bounds_ws_;
   surfaces_ws.extend(state_->casters.bounds_ws());
-  bool is_short = settings_.can_have_short_maps && !has_long_maps;
+  const bool is_fitted = settings_.is_fitted_to_depth;
+  const double error_max = is_fitted ? fitted_short_depth_error_max : short_depth_error_max;
+  bool is_short = settings_.can_have_short_maps && (is_fitted || !has_long_maps);
   for_each_slot([&](const ShadowSlot &slot) {
     is_short = is_short && (slot.place.given.array != ShadowArrayId::Maps ||
-                            short_depth_error(slot, surfaces_ws) <= short_depth_error_max);
+                            short_depth_error(slot, surfaces_ws) <= error_max);
   });
   const gpu::Format format = is_short ? gpu::Format::Depth16 : gpu::Format::Depth32F;
   const bool is_changed = format != maps.format();
   maps.set_format(format);
   for_each_slot([&](ShadowSlot &slot) {
     if (slot.place.given.array == ShadowArrayId::Maps) {
-      slot.depth_rounding = is_short ? short_depth_rounding : shared::DEPTH_ROUNDING;
+      slot.depth_half_step = is_short ? short_depth_half_step : 0.0F;
       slot.invalidate(is_changed ? ~0U : 0U);
     }
   });

@@ -36,9 +36,16 @@ struct SunFit {
   int size_px = 0;
   /** Angle from the lamp's axes to those of the box, around the light, radians. \see turned */
   double turn = 0.0;
-  /** The covered box in its axes, metres: xy is perpendicular to the light, z is along the light. */
+  /**
+   * The covered box in its axes, metres: xy is perpendicular to the light, z is along the light. z is measured from the
+   * plane z = slope.x · x + slope.y · y, so that the depths of receivers near to it have a small range. Casters with
+   * greater z are clamped to it.
+   */
   glm::dvec3 min{0.0};
   glm::dvec3 max{0.0};
+  glm::dvec2 slope{0.0};
+  /** From the first caster to the last receiver along the light, metres. At least the length of the box. */
+  double caster_length = 0.0;
   /** The part of the box that is needed. The rest is slack for movements of the camera. */
   glm::dvec3 needed_min{0.0};
   glm::dvec3 needed_max{0.0};
@@ -49,6 +56,18 @@ struct SunFit {
     return glm::max(max.x - min.x, max.y - min.y) / size_px;
   }
 };
+
+/** A plane, and the range of the distances of some points from it along z: z - slope.x · x - slope.y · y. */
+struct DepthRange {
+  glm::dvec2 slope{0.0};
+  double min = 0.0;
+  double max = 0.0;
+};
+/**
+ * A plane from which \a points have a small range: the one with the least squares of the distances, or one across z if
+ * that has a smaller range. \pre \a points is not empty
+ */
+[[nodiscard]] DepthRange depth_range(std::span<const glm::dvec3> points);
 
 /** The visible part of the casters' bounds, to which cascades are fitted. */
 struct VisibleRange {
@@ -90,7 +109,8 @@ struct Sphere {
  *
  * With \a clusters, those of \a visible, each other cascade is a rectangle around the clusters of some distances, as
  * small as possible, \see sun_slices; CascadeSettings::lambda has no effect. It fits one picture: it has no slack, and
- * its texels are on no grid.
+ * its texels are on no grid. Along the light, it contains the clusters that are inside of the rectangle, and the last
+ * cascade all visible receivers: from a plane along these, \see SunFit::slope. Casters in front of that are clamped.
  *
  * Otherwise the extent of a cascade changes in steps, its texels are aligned to a grid that is fixed in the world, and
  * it is a little larger than necessary. A cascade therefore need not be drawn again after small movements of the
