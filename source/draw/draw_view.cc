@@ -124,9 +124,8 @@ CullingPlanes View::culling_planes() const
 bool touches(const CullingPlanes &planes, const CullingVolume &volume)
 {
   const float lowest = -culling_reach(volume);
-  return std::ranges::none_of(planes, [&](const glm::vec4 &plane) {
-    return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w < lowest;
-  });
+  return std::ranges::none_of(
+      planes, [&](const glm::vec4 &plane) { return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w < lowest; });
 }
 
 bool View::touches(const CullingVolume &volume) const

@@ -135,7 +135,7 @@ TEST_F(ShadowLayersGpuTest, ThreeCubePassesGiveTheSameTexels)
   }
 }
 
-/** Rounded by the driver. \see short_depth_rounding */
+/** Rounded by the driver. \see short_depth_half_step */
 TEST_F(ShadowLayersGpuTest, ShortMapsHoldTheSameDepthsInHalfOfTheMemory)
 {
   make_garden();
@@ -155,7 +155,8 @@ TEST_F(ShadowLayersGpuTest, ShortMapsHoldTheSameDepthsInHalfOfTheMemory)
     }
   }
   EXPECT_EQ(2 * bytes[1], bytes[0]);
-  EXPECT_NEAR(rounding[1] / rounding[0], short_depth_rounding / shared::DEPTH_ROUNDING, 1e-3);
+  EXPECT_NEAR(rounding[1] / rounding[0], (short_depth_half_step + shared::DEPTH_ROUNDING) / shared::DEPTH_ROUNDING,
+              1e-3);
   const std::size_t layer_count = texels.size() / 2;
   ASSERT_GE(layer_count, 2U) << "a spot and a sun";
   float largest = 0.0F;
@@ -164,8 +165,43 @@ TEST_F(ShadowLayersGpuTest, ShortMapsHoldTheSameDepthsInHalfOfTheMemory)
       largest = std::max(largest, std::abs(texels[layer_count + layer].at(i).x - texels[layer][i].x));
     }
   }
-  EXPECT_LE(largest, short_depth_rounding);
+  EXPECT_LE(largest, short_depth_half_step + shared::DEPTH_ROUNDING);
   EXPECT_GT(largest, 0.0F) << "the depths are not floats";
+}
+
+/** A caster high above the ground that the camera sees, and fitted maps without it. */
+TEST_F(ShadowLayersGpuTest, CastersInFrontOfFittedDepthsDarkenWhatIsBehindThem)
+{
+  add(box, {0, -1, 0}, {8, 1, 8});
+  // Low boxes, so that the ground is not all that maps show.
+  add(box, {-3, 0.1F, -3}, glm::vec3(0.1F));
+  add(box, {3, 0.1F, 3}, glm::vec3(0.1F));
+  const auto high = add(box, {0, 2000, 0}, glm::vec3(1.0F));
+  const auto sun = test::add_lamp(scene, scene::LampKind::Sun, {0, 5, 0}, {0, -1, 0}, 3.0F);
+  // A sun is at no distance, so that this has no effect.
+  scene.edit(sun, [](scene::Lamp &lamp) { lamp.shadow.clip_start = 1.0F; });
+  camera = test::camera_at({0, 8, 6}, {0, 0, 0}, 0.7F);
+  constexpr glm::ivec2 size_px(32, 32);
+  const auto picture = [&](bool can_have_short_maps) {
+    Renderer renderer(
+        *device, scene, size_px,
+        {.shadow = {.map_size_px = 512, .is_fitted_to_depth = true, .can_have_short_maps = can_have_short_maps},
+         .sample_count = 1});
+    Picture result = renderer.picture(camera);
+    const shared::ShadowMapData &map = renderer.inspect().shadows().block_data().maps[0];
+    const glm::vec4 caster = map.texco_from_world * glm::vec4(0, 2000, 0, 1);
+    EXPECT_GT(caster.z, 1.0F) << "in front of the depths";
+    const gpu::Format format = renderer.inspect().shadows().scene().maps().desc().format;
+    EXPECT_EQ(format, can_have_short_maps ? gpu::Format::Depth16 : gpu::Format::Depth32F);
+    return result;
+  };
+  const std::size_t middle = std::size_t(size_px.y / 2 * size_px.x + size_px.x / 2);
+  const Picture with_high = picture(true);
+  EXPECT_EQ(with_high.pixels.at(middle).x, 0.0F) << "in shadow";
+  EXPECT_EQ(with_high.pixels, picture(false).pixels);
+  scene.remove(high);
+  Renderer without(*device, scene, size_px, {.sample_count = 1});
+  EXPECT_GT(without.picture(camera).pixels.at(middle).x, 0.1F) << "lit";
 }
 
 // hazards.md: every caster drawn six times into every updated lamp, no cull.

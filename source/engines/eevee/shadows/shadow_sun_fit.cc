@@ -23,11 +23,6 @@ constexpr double slack = 1.0 / 32.0;
 const double extent_step = std::exp2(1.0 / 8.0);
 /** Margin around the needed box for the filter kernel, texels. */
 constexpr double margin_texels = 4.0;
-/**
- * Casters in front of the receivers are clamped beyond this length of the depths, texels. The error of 16-bit depths is
- * then a fiftieth of a texel.
- */
-constexpr double whole_depths_texels = 0.02 * 2.0 * 65535.0;
 
 /** A box in the axes of a lamp, in double precision. */
 struct LampBox {
@@ -185,11 +180,8 @@ void fit_depths(SunFit &fit, const glm::dmat3 &lamp_from_world, std::span<const 
   fit.slope = range.slope;
   // Lookups are offset from receivers, and read the texels around them.
   const double margin = slack * (range.max - range.min) + margin_texels * fit.texel();
-  // The first caster, above the lowest point of the plane.
-  const glm::dvec2 lowest = glm::min(fit.slope * glm::dvec2(fit.min), fit.slope * glm::dvec2(fit.max));
-  const double first = fit.max.z - lowest.x - lowest.y;
   fit.min.z = range.min - margin;
-  fit.max.z = std::max(range.max + margin, std::min(first, fit.min.z + whole_depths_texels * fit.texel()));
+  fit.max.z = range.max + margin;
   fit.caster_length = std::max(fit.caster_length, fit.max.z - fit.min.z);
   set_view(fit, lamp_from_world);
 }
@@ -316,9 +308,9 @@ struct SlicePlan {
 
 /**
  * The texels that a picture needs: those of the smallest number of slices that suffices. \a size_px: edge of the maps
- * that `choices` were made for, texels. \a size_max_px: the largest edge, for the largest number of slices.
+ * that `choices` were made for, texels. \a enlarged_px: the largest edge, for the largest number of slices.
  */
-SlicePlan sufficient_slices(const std::vector<SunSlices> &choices, int size_px, int size_max_px,
+SlicePlan sufficient_slices(const std::vector<SunSlices> &choices, int size_px, int enlarged_px,
                             const CascadeSettings &settings)
 {
   const auto sufficient = std::ranges::find_if(
@@ -336,26 +328,30 @@ SlicePlan sufficient_slices(const std::vector<SunSlices> &choices, int size_px, 
   const double size = size_px / std::pow(resize_step, std::floor(std::log(factor) / std::log(resize_step)));
   const bool can_enlarge = index + 1 == choices.size() && texel > settings.texel_in_pixels_enlarged;
   return {index, int(std::clamp(std::ceil(size), std::min(size_min_px, double(size_px)),
-                                double(can_enlarge ? size_max_px : size_px)))};
+                                double(can_enlarge ? enlarged_px : size_px)))};
 }
 
-/** The number of slices with the fewest texels that have the error of sufficient_slices. */
-SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int size_max_px,
-                      const CascadeSettings &settings)
+/**
+ * The number of slices with the fewest texels that have the error of sufficient_slices, with texels that are smaller by
+ * short_depth_gain. \a enlarged_px: the largest edge for sufficient_slices. \a size_max_px, \a edge_max_px: \see
+ * fit_sun.
+ */
+SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int enlarged_px, int size_max_px,
+                      int edge_max_px, const CascadeSettings &settings)
 {
-  SlicePlan plan = sufficient_slices(choices, size_px, size_max_px, settings);
-  const double error = choices[plan.index].error * std::pow(double(size_px) / plan.size_px, 2.0);
+  SlicePlan plan = sufficient_slices(choices, size_px, enlarged_px, settings);
+  const double error = choices[plan.index].error * std::pow(double(size_px) / (short_depth_gain * plan.size_px), 2.0);
   if (!settings.can_resize || settings.count > 0 || error == 0.0) {
     return plan;
   }
-  const auto texels = [&](const SlicePlan &one) {
-    return double(choices[one.index].slices.size() + 1) * one.size_px * one.size_px;
-  };
+  plan.size_px = std::min(int(std::ceil(short_depth_gain * plan.size_px)), size_max_px);
+  const auto map_count = [&](std::size_t i) { return double(choices[i].slices.size() + 1); };
+  const auto texels = [&](const SlicePlan &one) { return map_count(one.index) * one.size_px * one.size_px; };
   for (std::size_t i = 0; i < choices.size(); i++) {
     const double size = std::max(std::ceil(size_px * std::sqrt(choices[i].error / error)), size_min_px);
-    const SlicePlan other{i, int(std::min(size, double(size_max_px)))};
-    if (size <= size_max_px && texels(other) < texels(plan)) {
-      plan = other;
+    const double most = std::min(size_max_px * std::sqrt(cascade_count_max / map_count(i)), double(edge_max_px));
+    if (size <= most && texels({i, int(size)}) < texels(plan)) {
+      plan = {i, int(size)};
     }
   }
   return plan;
@@ -380,10 +376,11 @@ void find_receivers(const SunFit &fit, const glm::dmat3 &lamp_from_world, std::s
 
 /** Fill \a fits with cascades around \a clusters, and one around \a needed behind them. */
 void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, const draw::View &view,
-                     const VisibleRange &visible, std::span<const VisibleCluster> clusters, int size_max_px, const CascadeSettings &settings,
-                     float pixel_size, std::vector<SunFit> &fits)
+                     const VisibleRange &visible, std::span<const VisibleCluster> clusters, int size_max_px,
+                     int edge_max_px, const CascadeSettings &settings, float pixel_size, std::vector<SunFit> &fits)
 {
-  const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / resize_step)), 1) : size_max_px;
+  const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / size_growth_max)), 1) : size_max_px;
+  const int enlarged_px = settings.can_resize ? int(std::lround(resize_step * size_px)) : size_px;
   // All maps have one size.
   const auto slices_at = [&](int px) {
     const SunFit whole = fit_to(needed, lamp_from_world, px, false);
@@ -398,7 +395,7 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
                       (settings.count > 0 ? settings.count : cascade_count_max) - 1);
   };
   std::vector<SunSlices> choices = slices_at(size_px);
-  const SlicePlan plan = plan_slices(choices, size_px, size_max_px, settings);
+  const SlicePlan plan = plan_slices(choices, size_px, enlarged_px, size_max_px, edge_max_px, settings);
   if (plan.size_px != size_px) {
     // The margin of the coarsest map is wider if its texels are larger.
     choices = slices_at(plan.size_px);
@@ -429,7 +426,7 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
 std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
                             float pixel_size, std::vector<SunFit> memory, double tangent,
-                            std::span<const VisibleCluster> clusters)
+                            std::span<const VisibleCluster> clusters, int edge_max_px)
 {
   std::vector<SunFit> fits = std::move(memory);
   fits.clear();
@@ -440,7 +437,8 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
   const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
   // One map must cover all receivers.
   if (settings.count != 1 && !clusters.empty()) {
-    fit_to_clusters(*needed, lamp_from_world, view, visible, clusters, size_px, settings, pixel_size, fits);
+    fit_to_clusters(*needed, lamp_from_world, view, visible, clusters, size_px, std::max(edge_max_px, size_px),
+                    settings, pixel_size, fits);
     return fits;
   }
   const SunFit whole = fit_to(*needed, lamp_from_world, size_px, true);

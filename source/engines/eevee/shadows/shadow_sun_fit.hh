@@ -26,6 +26,13 @@ struct Caster;
 inline constexpr double texel_in_pixels_max = 0.2;
 /** Sizes of maps change by powers of this factor. */
 inline constexpr double resize_step = 1.189207115;
+/**
+ * Fitted maps with a size of their own have texels that are smaller by this factor than the picture needs. Without it,
+ * the steps of 16-bit depths, and the larger offset of receivers, would add to the error of pictures.
+ */
+inline constexpr double short_depth_gain = 1.04;
+/** The largest size of a map, over the size asked for, if a sun has the most maps. */
+inline constexpr double size_growth_max = resize_step * short_depth_gain;
 
 /** The view of one cascade, and the box that it covers. */
 struct SunFit {
@@ -116,17 +123,18 @@ struct Sphere {
  * it is a little larger than necessary. A cascade therefore need not be drawn again after small movements of the
  * camera, and texels of objects that do not move are stable when it is drawn again.
  *
- * \a size_px: edge of a map, texels; resize_step times the size asked for if maps can have other sizes. \a pixel_size:
- * edge of a pixel of the picture, metres: at a distance of 1 m (perspective) or at any distance (orthographic). \a
- * memory: its capacity is reused for the result; its content is discarded. \a tangent: of half the angle of a sun that
- * is shaded as a whole. The last cascade then also covers the casters whose penumbrae reach a visible receiver. 0 for
- * other suns.
+ * \a size_px: edge of a map, texels; size_growth_max times the size asked for if maps can have other sizes. \a
+ * edge_max_px: the largest edge of maps that have no more texels together than the most maps of that size; 0: that
+ * size. \a pixel_size: edge of a pixel of the picture, metres: at a distance of 1 m (perspective) or at any distance
+ * (orthographic). \a memory: its capacity is reused for the result; its content is discarded. \a tangent: of half the
+ * angle of a sun that is shaded as a whole. The last cascade then also covers the casters whose penumbrae reach a
+ * visible receiver. 0 for other suns.
  */
 [[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size,
                                           std::vector<SunFit> memory = {}, double tangent = 0.0,
-                                          std::span<const VisibleCluster> clusters = {});
+                                          std::span<const VisibleCluster> clusters = {}, int edge_max_px = 0);
 
 /** Whether \a old can replace \a needed: it has the same axes and covers the needed box, and its texels are not much
  * larger. */

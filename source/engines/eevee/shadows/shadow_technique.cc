@@ -227,8 +227,7 @@ static void record_instances(const ShadowSlot &slot, LayerMask layers, const Sha
   // Casters in front of the near plane are clamped to it, unless the lamp has a clip_start, which suns have not. The
   // pass state has depth clamping; the argument is the state to remove.
   const bool is_clipped = slot.lamp.shadow.clip_start && slot.lamp.kind != scene::LampKind::Sun;
-  recording.pass.record(slot.views.front(), recording.list,
-                        is_clipped ? gpu::State::DepthClamp : gpu::State::None);
+  recording.pass.record(slot.views.front(), recording.list, is_clipped ? gpu::State::DepthClamp : gpu::State::None);
 }
 
 LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_drawn, const ShadowRecording &recording)
