@@ -176,7 +176,7 @@ TEST_F(ShadowLayersGpuTest, CastersInFrontOfFittedDepthsDarkenWhatIsBehindThem)
   // Low boxes, so that the ground is not all that maps show.
   add(box, {-3, 0.1F, -3}, glm::vec3(0.1F));
   add(box, {3, 0.1F, 3}, glm::vec3(0.1F));
-  const auto high = add(box, {0, 2000, 0}, glm::vec3(1.0F));
+  const auto high = test::add_object(scene, box, glm::translate(glm::mat4(1.0F), {0, 2000, 0}));
   const auto sun = test::add_lamp(scene, scene::LampKind::Sun, {0, 5, 0}, {0, -1, 0}, 3.0F);
   // A sun is at no distance, so that this has no effect.
   scene.edit(sun, [](scene::Lamp &lamp) { lamp.shadow.clip_start = 1.0F; });
@@ -196,9 +196,9 @@ TEST_F(ShadowLayersGpuTest, CastersInFrontOfFittedDepthsDarkenWhatIsBehindThem)
     return result;
   };
   const std::size_t middle = std::size_t(size_px.y / 2 * size_px.x + size_px.x / 2);
-  const Picture with_high = picture(true);
-  EXPECT_EQ(with_high.pixels.at(middle).x, 0.0F) << "in shadow";
-  EXPECT_EQ(with_high.pixels, picture(false).pixels);
+  for (const bool can_have_short_maps : {false, true}) {
+    EXPECT_LT(picture(can_have_short_maps).pixels.at(middle).x, 1e-3F) << "in shadow";
+  }
   scene.remove(high);
   Renderer without(*device, scene, size_px, {.sample_count = 1});
   EXPECT_GT(without.picture(camera).pixels.at(middle).x, 0.1F) << "lit";
