@@ -130,8 +130,9 @@ struct ShadowSettings {
   bool is_fitted_to_depth = false;
   /**
    * Whether maps of suns and spots may have 16-bit depths, which take half of the memory. They have them while the
-   * error of these depths is at most a tenth of a texel for all maps, \see short_depth_error_max. Receivers are offset
-   * by it.
+   * error of these depths is at most a tenth of a texel for all maps, \see short_depth_error_max; with
+   * is_fitted_to_depth, while all maps are cascades of suns that are fitted to depths, and the error is at most a
+   * twentieth. Receivers are offset by it.
    */
   bool can_have_short_maps = false;
   LayerPass layer_pass = LayerPass::Best;

@@ -519,7 +519,7 @@ TEST(FittedCascades, HaveTheFewestTexelsOfTheirError)
   const SeenGroundPicture picture(
       draw::View(looking_down_from({1, 20, 4}), draw::perspective(0.1F, 0.08F, 0.1F, 1000.0F)));
   int fewer = 0;
-  for (float pixel = 0.01F; pixel < 3.0F; pixel *= 1.25F) {
+  for (float pixel = 5e-4F; pixel < 0.5F; pixel *= 1.25F) {
     const std::vector<SunFit> shared = scene.fits(picture, true, 0, pixel, true);
     const std::vector<SunFit> alone = scene.fits(picture, true, 0, pixel, true, texel_in_pixels, 2 * SunScene::size_px);
     EXPECT_LE(texel_count(alone), texel_count(shared)) << pixel;

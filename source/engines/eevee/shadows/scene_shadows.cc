@@ -245,7 +245,7 @@ void SceneShadows::choose_map_format()
   bool is_short = settings_.can_have_short_maps && (is_fitted || !has_long_maps);
   for_each_slot([&](const ShadowSlot &slot) {
     if (slot.place.given.array == ShadowArrayId::Maps && !slot.views.empty()) {
-      // Only depths that are fitted, too, have steps without an effect on pictures of many samples.
+      // Other maps have longer depths, whose steps would add to the error of pictures of many samples.
       const bool has_fitted_depths = !slot.fits.empty() && !slot.fits.front().is_stable;
       is_short = is_short && (has_fitted_depths || !is_fitted) && short_depth_error(slot, surfaces_ws) <= error_max;
     }
