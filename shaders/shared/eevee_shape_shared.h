@@ -154,8 +154,8 @@ SHARED_FUNCTION CutPolygon with_edge(CutPolygon polygon, vec3 a, vec3 b)
  * and its z is the lamp's form factor, irradiance / (π · radiance), in [0, 1]. It is the same from both sides of the lamp.
  *
  * \a center: centre of the lamp relative to the receiver. \a axis_x, \a axis_y: half axes, in any directions. \a corner_count:
- * RECTANGLE_CORNERS for the parallelogram center ± axis_x ± axis_y; more for a polygon with the area of the ellipse of these axes.
- * \a up: normal of a second clipping plane through the receiver; vec3(0, 0, 1) for none. Finite for all finite arguments whose
+ * RECTANGLE_CORNERS for the parallelogram center ± axis_x ± axis_y; ELLIPSE_CORNERS for a polygon with the area of the ellipse of these
+ * axes. \a up: normal of a second clipping plane through the receiver; vec3(0, 0, 1) for none. Finite for all finite arguments whose
  * squares are finite; 0 for a lamp without area or seen edge-on.
  */
 SHARED_FUNCTION vec3 flat_flux(vec3 center, vec3 axis_x, vec3 axis_y, int corner_count, vec3 up)
@@ -170,7 +170,8 @@ SHARED_FUNCTION vec3 flat_flux(vec3 center, vec3 axis_x, vec3 axis_y, int corner
     return to_lamp * (is_up ? (is_rectangle ? 4.0f * INV_PI : 1.0f) * facing : 0.0f);
   }
   // First corner and rotation to the next corner: of a regular polygon of area π, or of the rectangle with corners (±1, ±1).
-  float step_angle = 2.0f * PI / float(corner_count);
+  // Constants, because Vulkan lets the sine and cosine of a driver be off by 5e-4, and small lamps are small differences.
+  const float step_angle = 2.0f * PI / float(ELLIPSE_CORNERS);
   vec2 turn = is_rectangle ? vec2(0.0f, 1.0f) : vec2(cos(step_angle), sin(step_angle));
   vec2 at = is_rectangle ? vec2(1.0f, 1.0f) : vec2(sqrt(step_angle / turn.y), 0.0f);
   CutPolygon polygon;

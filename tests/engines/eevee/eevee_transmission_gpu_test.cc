@@ -249,8 +249,7 @@ TEST_F(TransmissionGpuTest, ASphereRefractsAtBothOfItsSurfaces)
   scene.set_world(scene::World{.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))});
   test::remove_objects(scene);
   const auto sphere = test::add_sphere_mesh(scene, glass);
-  const std::size_t texel_count =
-      scene.meshes()[sphere].indices.size() / 3 * (BODY_TRIANGLE_TEXELS + BODY_NODE_TEXELS);
+  const std::size_t texel_count = scene.meshes()[sphere].indices.size() / 3 * (BODY_TRIANGLE_TEXELS + BODY_NODE_TEXELS);
   if (std::size_t(device->limits().buffer_texels_max) < texel_count) {
     GTEST_SKIP() << "the triangles do not fit into a texel buffer of " << device->limits().buffer_texels_max;
   }

@@ -171,8 +171,9 @@ void SurfacePasses::record_inspection(Kind &kind, const Recording &recording, co
   const SurfaceInputs &inputs = recording.inputs;
   const auto &[surface, textures, function, lighting, shape, state] = inspected;
   if (inputs.tinted_entry && surface != MaterialClass::Transmissive) {
-    add_group(kind, recording, tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, inputs.features | shape),
-              state, MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
+    add_group(kind, recording, tint_pass_,
+              recording.shaders.get(device, ShaderId::DebugCascades, inputs.features | shape), state,
+              MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
                 recording.bind(group);
                 group.constant("tinted_light", *inputs.tinted_entry);
               });
@@ -180,8 +181,8 @@ void SurfacePasses::record_inspection(Kind &kind, const Recording &recording, co
   if (inputs.has_surfaces) {
     // The program reads normals also where nothing gives light.
     add_group(kind, recording, probe_.surfaces_pass(),
-              recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface) | shape, function), state,
-              surface, textures, recording.bind);
+              recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface) | shape, function),
+              state, surface, textures, recording.bind);
   }
   if (inputs.has_probe && has(inputs.features, Feature::Light)) {
     add_group(kind, recording, probe_.visibility_pass(), recording.shaders.get(device, ShaderId::Probe, lighting),
