@@ -21,6 +21,7 @@ void main()
 {
   write_depth_on_plane(0.125);
   Surface surface = make_surface();
+  place_on_ray(surface);
   LightData light = light_data.lights[tinted_light];
   int first = light.shadow_index;
   int count = min(shadow.maps[first].cascade_count, 4);
@@ -28,7 +29,8 @@ void main()
   float open = 1.0;
   for (int i = 0; i < count && open > 0.0; i++) {
     float normal_offset;
-    float coverage = map_coverage(map_receiver(shadow.maps[first + i], surface, -light.forward_ws, normal_offset));
+    ShadowMapData map = shadow.maps[first + i];
+    float coverage = map_coverage(map, map_receiver(map, surface, -light.forward_ws, normal_offset));
     float share = open * cascade_share(i == count - 1, coverage);
     sum += share * CASCADE_TINTS[i];
     open -= share;

@@ -12,6 +12,9 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   /** Distances of depths 1 and 0, metres, for each cascade. The first is used for all faces. */
   vec4 near;
   vec4 far;
+  /** Change of both distances from the left to the right edge, and from the lower to the upper one. */
+  vec4 tilt_x;
+  vec4 tilt_y;
   /** Distances that are shown as black and white, metres. */
   vec2 shown;
   /** PROJECTION_… of the depths. */
@@ -70,6 +73,7 @@ void main()
   int range = is_cube != 0 ? 0 : min(layer, 3);
   float distance = esm_format >= 0 ? esm_decoded(stored, far[range], esm_format) :
                                      distance_of_depth(stored, near[range], far[range], projection);
+  distance += dot(vec2(tilt_x[range], tilt_y[range]), (vec2(texel) + 0.5) / float(size_px));
   // A filtered value of cleared texels only is not exactly `far`, because it is rounded.
   bool is_cleared = esm_format >= 0 ? distance >= 0.9999 * far[range] : stored <= 0.0;
   float share = clamp((distance - shown.x) / max(shown.y - shown.x, 1e-30), 0.0, 1.0);

@@ -15,17 +15,13 @@ void main()
 {
   write_depth_on_plane(0.125);
   Surface surface = make_surface();
+  place_on_ray(surface);
   uint bits = surface_material;
 #ifdef USE_SPECULAR
   // A positive half float has 15 bits.
   bits |= packHalf2x16(vec2(sqrt(normal_change_sq(surface)), 0.0)) << GBUFFER_MATERIAL_BITS;
 #endif
-#ifdef HAS_COARSE_GRID
-  float depth = gbuffer_depth_on_plane(surface.position_ws, surface.geometric_normal_ws);
-#else
-  float depth = gbuffer_depth(surface.position_ws);
-#endif
   texel = vec4(gbuffer_from_direction(surface.normal_ws), gbuffer_from_direction(surface.geometric_normal_ws),
-               gbuffer_float(bits), depth);
+               gbuffer_float(bits), gbuffer_depth(surface.position_ws));
   discard_clipped();
 }

@@ -32,6 +32,18 @@ vec2 step_over_centre(mat4 clip_from_world, vec2 place_px)
   }
   return steps;
 }
+
+/**
+ * A w at which the vertex is at most 2^25 pixels from the middle of the picture. SwiftShader has places of vertices in 1/16 pixels as
+ * integers of 32 bits, also before it clips, and drew no triangle with an edge beside the eye, where w is 0. As seen from the eye, the
+ * vertex moves by size_px / 2^26, in pixels the square of size_px / 2^13.5 where it is most.
+ */
+float distant_w(vec4 position, vec2 size_px)
+{
+  vec2 sides = abs(position.xy) * size_px;
+  float least = exp2(-26.0) * max(sides.x, sides.y);
+  return abs(position.w) >= least ? position.w : position.w < 0.0 ? -least : least;
+}
 #endif
 
 /** The position in clip space. \a size_px: of the picture. */
@@ -41,6 +53,7 @@ vec4 placed_vertex(mat4 clip_from_world, vec4 position_ws, vec2 size_px)
 #ifdef HAS_COARSE_GRID
   grid_place = vec4(0.5 * size_px * (position.xy + position.w), position.zw);
   grid_behind = position.w > 0.0 ? 0.0 : 1.0;
+  position.w = distant_w(position, size_px);
   if (position.w > 0.0) {
     position.xy += step_over_centre(clip_from_world, grid_place.xy / position.w) * 2.0 / size_px * position.w;
   }

@@ -56,6 +56,7 @@ void main()
   surface = normal_mapped(surface);
 #    endif
 #  endif
+  place_on_ray(surface);
 #  ifdef USE_SPECULAR
   material.alpha = sampled_alpha(material.alpha, surface, normal_change_sq(surface));
 #  endif

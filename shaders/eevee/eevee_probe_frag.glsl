@@ -18,6 +18,7 @@ void main()
 {
   write_depth_on_plane(0.125);
   Surface surface = make_surface();
+  place_on_ray(surface);
   LightData light = light_data.lights[probed_light];
   vec3 to_light = light.kind == LIGHT_SUN ? -light.forward_ws : light.position_ws - surface.position_ws;
   float visibility = light_visibility(light, LIGHTS_ALL, surface, normalized(to_light, vec3(0.0)), true);

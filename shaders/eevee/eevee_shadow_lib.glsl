@@ -350,7 +350,7 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
   float normal_offset;
   vec4 receiver = map_receiver(map, surface, to_light, normal_offset);
   vec4 lookup = receiver + map.texco_from_world * vec4(offset, 0.0);
-  coverage = receiver.w > 0.0 ? map_coverage(lookup) : 0.0;
+  coverage = receiver.w > 0.0 ? map_coverage(map, lookup) : 0.0;
   place.is_covered = coverage > 0.0;
   if (!place.is_covered) {
     return place;

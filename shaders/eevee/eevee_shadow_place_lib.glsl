@@ -60,10 +60,14 @@ vec4 map_receiver(ShadowMapData map, Surface surface, vec3 to_light, out float n
   return w > map.far ? vec4(0.0) : receiver;
 }
 
-/** 0 outside the map, 1 inside except near the edge of the map. \a texco: times w, as map_receiver returns it. */
-float map_coverage(vec4 texco)
+/**
+ * 0 outside the map, 1 inside except near the edge of the map. \a texco: times w, as map_receiver returns it. The last map of a light
+ * is deep enough for all receivers; the others for those that were seen when they were fitted.
+ */
+float map_coverage(ShadowMapData map, vec4 texco)
 {
-  if (texco.w <= 0.0) {
+  bool is_in_depths = map.cascade_count == 1 || abs(texco.z - 0.5) <= 0.5;
+  if (texco.w <= 0.0 || !is_in_depths) {
     return 0.0;
   }
   vec2 from_edge = min(texco.xy, texco.w - texco.xy) / texco.w;

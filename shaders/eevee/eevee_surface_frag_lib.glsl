@@ -2,6 +2,9 @@
 // For fragment shaders: the shaded point, from the outputs of eevee_surface_vert_lib.glsl.
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
+#ifdef HAS_COARSE_GRID
+#  include "eevee/eevee_gbuffer_lib.glsl"
+#endif
 
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
@@ -30,4 +33,17 @@ Surface make_surface()
   surface.smooth_normal_ws = surface.normal_ws;
 #endif
   return surface;
+}
+
+/**
+ * Move the surface along its plane to the ray of the pixel, on devices that move vertices to a coarse grid. It is then lit as at the same
+ * place in all passes. Does nothing on other devices.
+ */
+void place_on_ray(inout Surface surface)
+{
+#ifdef HAS_COARSE_GRID
+  vec2 ndc = gl_FragCoord.xy * vec2(view.place_right.w, view.place_up.w) - 1.0;
+  surface.position_ws = gbuffer_position(ndc, gbuffer_depth_on_plane(surface.position_ws, surface.geometric_normal_ws));
+  surface.view_ws = normalized(to_viewer(surface.position_ws), view.back_ws);
+#endif
 }

@@ -46,6 +46,7 @@ void main()
 #ifdef USE_BASE_COLOR_TEXTURE
   albedo *= texture(base_color_texture, surface_uv, view.texture_lod_bias).rgb;
 #endif
+  place_on_ray(surface);
   position_depth = vec4(surface.position_ws, dot(view.back_ws, view.position_ws - surface.position_ws));
   normal_object = vec4(surface.normal_ws, float(surface_object));
   albedo_roughness = vec4(albedo, sqrt(material.alpha));

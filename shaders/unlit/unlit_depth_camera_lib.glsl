@@ -6,6 +6,6 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
   /** Matrix of the depth camera. */
   mat4 clip_from_world;
-  /** Tolerance for rounding: x is relative to the surface's depth, y is absolute. */
-  vec2 depth_tolerance;
+  /** Tolerance for rounding: x is relative to the surface's depth, y is absolute, z is the grid of corners in texels. */
+  vec3 depth_tolerance;
 };

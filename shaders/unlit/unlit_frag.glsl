@@ -39,8 +39,8 @@ float shadow()
   vec2 to_middle = floor(texel) + 0.5 - texel;
   // If the plane is seen edge-on, its depth at the centre of the texel is undefined.
   vec2 depth_of_texel = area != 0.0 ? slope / area : vec2(0.0);
-  // Rasterisers move the corners of triangles to a grid of 1/256 texel, and the plane of the stored depths with them.
-  float moved = (abs(depth_of_texel.x) + abs(depth_of_texel.y)) / 256.0;
+  // Rasterisers move the corners of triangles to a grid, and the plane of the stored depths with them.
+  float moved = (abs(depth_of_texel.x) + abs(depth_of_texel.y)) * depth_tolerance.z;
   float depth = place.z + dot(depth_of_texel, to_middle) + moved;
   float stored = texelFetch(depth_texture, ivec2(texel), 0).r;
   // Depths are reversed: a nearer surface has a greater depth.

@@ -191,13 +191,29 @@ std::vector<ProgramCheck> run_jobs(const std::vector<ShaderJob> &jobs, const Job
     }
   }
   const bool is_terminal = stderr_is_terminal();
-  const std::vector<WorkResult> answers = run_in_workers(
-      open.size(), options.limits, [&](std::size_t i) { return to_bytes(jobs[open[i]].check()); },
-      [&](std::size_t done) {
-        if (is_terminal) {
-          show_progress(done, open.size());
-        }
-      });
+  const auto check_jobs = [&](const std::vector<std::size_t> &indices, shader_check::StageErrors errors) {
+    return run_in_workers(
+        indices.size(), options.limits, [&](std::size_t i) { return to_bytes(jobs[indices[i]].check(errors)); },
+        [&](std::size_t done) {
+          if (is_terminal) {
+            show_progress(done, indices.size());
+          }
+        });
+  };
+  std::vector<WorkResult> answers = check_jobs(open, shader_check::StageErrors::All);
+  // glslang crashes behind some errors if it does not stop at them. Their messages then come from a second check.
+  std::vector<std::size_t> crashed;
+  for (std::size_t i = 0; i < open.size(); i++) {
+    if (answers[i].is_crash) {
+      crashed.push_back(open[i]);
+    }
+  }
+  std::vector<WorkResult> second = check_jobs(crashed, shader_check::StageErrors::First);
+  for (std::size_t i = 0, at = 0; i < open.size() && at < crashed.size(); i++) {
+    if (open[i] == crashed[at]) {
+      answers[i] = std::move(second[at++]);
+    }
+  }
   for (std::size_t i = 0; i < open.size(); i++) {
     const ShaderJob &job = jobs[open[i]];
     ProgramCheck &result = results[open[i]];

@@ -10,7 +10,7 @@ namespace gnomon::cli {
 
 /** The check of one program for one target. */
 struct ShaderJob {
-  std::function<shader_check::ProgramCheck()> check;
+  std::function<shader_check::ProgramCheck(shader_check::StageErrors)> check;
   /** For a message about a job that does not end. */
   std::string program;
   std::string file;

@@ -144,8 +144,9 @@ ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::Sha
   std::vector<ShaderJob> jobs;
   for (const gpu::ShaderDesc &desc : descs) {
     for (const shader_check::CheckTarget target : targets_of(arguments.target)) {
-      const auto check = [&desc, &files, &options, target] {
+      const auto check = [&desc, &files, &options, target](shader_check::StageErrors errors) {
         shader_check::CheckOptions job = options;
+        job.stage_errors = errors;
         job.target = target;
         shader_check::ProgramCheck result;
         const gpu::ShaderFiles noted = [&](std::string_view path) {
@@ -347,7 +348,11 @@ void add_missing_output(const std::vector<ShaderManifest::Entry> &entries,
 ShaderManifest programs_of_files(const CheckArguments &arguments, ShaderReport &others)
 {
   std::vector<shader_check::Program> programs;
+  std::set<fs::path> given;
   for (const std::string &file : arguments.files) {
+    if (!given.insert(fs::path(file).lexically_normal()).second) {
+      continue;
+    }
     if (arguments.stage == "surface" || (arguments.stage.empty() && is_surface_function(file))) {
       const ShaderReport report = check_surface_function(file, arguments);
       std::ranges::copy(report.messages, std::back_inserter(others.messages));
@@ -397,8 +402,10 @@ std::vector<ShaderJob> jobs_of(const ShaderManifest &project, const gpu::ShaderF
       shader_check::ProgramOptions job = options;
       job.target = target;
       const bool has_output = !arguments.output.empty();
-      const auto check = [&program, &files, job, has_output] {
-        shader_check::ProgramCheck result = shader_check::check_program(program, files, job);
+      const auto check = [&program, &files, job, has_output](shader_check::StageErrors errors) {
+        shader_check::ProgramOptions job_options = job;
+        job_options.stage_errors = errors;
+        shader_check::ProgramCheck result = shader_check::check_program(program, files, job_options);
         if (!has_output) {
           result.spirv.clear();
         }

@@ -209,7 +209,7 @@ class Worker {
       return std::nullopt;
     }
     if (count <= 0) {
-      return WorkResult{"", reap()};
+      return WorkResult{"", reap(), true};
     }
     answer_.append(buffer, std::size_t(count));
     AnswerHead head{};

@@ -21,6 +21,8 @@ struct WorkResult {
   std::string bytes;
   /** Why it returned nothing: a clause; empty: it returned. */
   std::string failure;
+  /** Whether it ended its process. */
+  bool is_crash = false;
 };
 
 /**

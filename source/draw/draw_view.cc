@@ -121,12 +121,16 @@ CullingPlanes View::culling_planes() const
   return planes;
 }
 
-bool View::touches(const CullingVolume &volume) const
+bool touches(const CullingPlanes &planes, const CullingVolume &volume)
 {
   const float lowest = -culling_reach(volume);
-  return std::ranges::none_of(culling_planes(), [&](const glm::vec4 &plane) {
-    return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w < lowest;
-  });
+  return std::ranges::none_of(
+      planes, [&](const glm::vec4 &plane) { return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w < lowest; });
+}
+
+bool View::touches(const CullingVolume &volume) const
+{
+  return draw::touches(culling_planes(), volume);
 }
 
 glm::mat4 perspective(float half_width, float half_height, float near, float far)

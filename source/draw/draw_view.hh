@@ -34,6 +34,9 @@ struct CullingVolume {
  */
 using CullingPlanes = std::array<glm::vec4, 6>;
 
+/** Whether a sphere may be inside of all \a planes. Spheres outside near an edge may return true. */
+[[nodiscard]] bool touches(const CullingPlanes &planes, const CullingVolume &volume);
+
 /** The radius and the rounding error of the height of the centre; infinite: the volume is never culled. Metres. */
 [[nodiscard]] float culling_reach(const CullingVolume &volume);
 
@@ -89,6 +92,8 @@ class ObjectSet {
  */
 class View {
  public:
+  /** Index of the near plane in frustum_planes_ws() and culling_planes(). */
+  static constexpr std::size_t near_plane = 4;
   /** The most planes of with_clip_planes(). */
   static constexpr std::size_t clip_plane_max = 6;
 

@@ -205,8 +205,10 @@ static TargetChoice target_of(const std::vector<Program::File> &sorted,
   const bool has_binary = std::ranges::any_of(sorted, [&](const Program::File &file) {
     return files(file.path).value_or("").find('\0') != std::string_view::npos;
   });
-  if (has_binary) {
-    // That is no text, which says nothing.
+  const bool has_file =
+      std::ranges::any_of(sorted, [&](const Program::File &file) { return files(file.path).has_value(); });
+  if (has_binary || !has_file) {
+    // Without a text, nothing says which target is meant.
     return {CheckTarget::Vulkan12, {}};
   }
   const gpu::ShaderFiles noted = [&](std::string_view path) {
@@ -251,6 +253,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
     CheckSettings settings{{}, false, options.features};
     settings.options.levels = options.levels;
     settings.options.is_strict = options.is_strict;
+    settings.options.stage_errors = options.stage_errors;
     const auto second = std::ranges::adjacent_find(std::as_const(sorted), {}, &Program::File::stage);
     TargetChoice choice = target_of(sorted, second, texts, options, tried);
     result.target = choice.target;

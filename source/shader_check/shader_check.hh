@@ -121,6 +121,14 @@ struct CheckMessage {
   bool operator==(const CheckMessage &) const = default;
 };
 
+/** The errors of a stage that are reported. */
+enum class StageErrors : std::uint8_t {
+  /** Those before glslang stops, which is at the first error of most kinds. */
+  First,
+  /** All, as glslc reports. Some mistakes crash glslang then: use it in a process that may end. */
+  All,
+};
+
 struct CheckOptions {
   CheckTarget target = CheckTarget::OpenGlSpirv;
   /** Each uniform and storage block must be one of these and have its layout; empty: layouts are not checked. */
@@ -130,6 +138,7 @@ struct CheckOptions {
   RuleLevels levels;
   /** Warnings are errors. */
   bool is_strict = false;
+  StageErrors stage_errors = StageErrors::First;
 };
 
 /**
@@ -166,6 +175,7 @@ struct ProgramOptions {
   bool is_strict = false;
   /** Names of device_features() that the shaders may use. */
   std::vector<std::string> features;
+  StageErrors stage_errors = StageErrors::First;
 };
 
 /** Features of devices that allow SPIR-V which the target otherwise forbids, by their names in Vulkan. */

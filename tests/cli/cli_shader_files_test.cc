@@ -147,6 +147,28 @@ TEST_F(ShaderFilesTest, AProgramThatTakesTooLongIsEndedAndOthersAreChecked)
   EXPECT_EQ(check("good.frag --time-limit 0").status, 2);
 }
 
+TEST_F(ShaderFilesTest, AMistakeBehindWhichTheCompilerCrashesHasItsLine)
+{
+  write("crash.frag",
+        "#version 450\n#extension GL_EXT_buffer_reference : require\nlayout(buffer_reference) buffer Ref { int v; };\n"
+        "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(Ref(uvec2(0)).v); }\n");
+  write("bad.frag", fragment_head + "void main() { c = oops; c = again; }\n");
+  const Finished finished = check("crash.frag bad.frag --target vulkan1.2");
+  EXPECT_EQ(finished.status, 1);
+  for (const std::string line : {"crash.frag:5: error: ", "bad.frag:3: error: 'oops'", "bad.frag:3: error: 'again'"}) {
+    EXPECT_NE(finished.out.find(line), std::string::npos) << line << " is not in:\n" << finished.out;
+  }
+  EXPECT_EQ(finished.out.find("[limit]"), std::string::npos) << finished.out;
+}
+
+TEST_F(ShaderFilesTest, AFileThatIsGivenTwiceIsCheckedOnce)
+{
+  write("bad.frag", fragment_head + "void main() { c = oops; }\n");
+  EXPECT_NE(check("bad.frag ./bad.frag").out.find("1 programs, 1 variants"), std::string::npos);
+  const Finished missing = check("missing.frag");
+  EXPECT_EQ(missing.out.find("has no version"), std::string::npos) << missing.out;
+}
+
 TEST(Workers, TheLimitIsOfCpuTime)
 {
   cli::WorkLimits limits;

@@ -27,8 +27,7 @@ Stage stage_named(const std::string &path)
 }
 
 /** Checks the files of \a texts whose names end in a stage; others are there for includes. */
-ProgramCheck check_texts(const Texts &texts, const ProgramOptions &options = {},
-                         const std::vector<std::string> &defines = {})
+ProgramCheck check_texts(const Texts &texts, ProgramOptions options = {}, const std::vector<std::string> &defines = {})
 {
   Program program{"test", {}, defines};
   for (const auto &[path, text] : texts) {
@@ -40,6 +39,7 @@ ProgramCheck check_texts(const Texts &texts, const ProgramOptions &options = {},
     const auto found = texts.find(std::string(path));
     return found == texts.end() ? std::nullopt : std::optional<std::string_view>(found->second);
   };
+  options.stage_errors = StageErrors::All;
   return check_program(program, files, options);
 }
 

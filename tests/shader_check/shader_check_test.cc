@@ -19,11 +19,12 @@ using test::VERSION;
 /** The caller's text begins in line 2. */
 const std::string COLOR = "layout(location = 0) out vec4 color; ";
 
-std::vector<CheckMessage> check(const std::string &vertex, const std::string &fragment,
-                                const CheckOptions &options = {}, ShaderTexts texts = {})
+std::vector<CheckMessage> check(const std::string &vertex, const std::string &fragment, CheckOptions options = {},
+                                ShaderTexts texts = {})
 {
   texts.texts["vert"] = VERSION + vertex;
   texts.texts["frag"] = VERSION + fragment;
+  options.stage_errors = StageErrors::All;
   return check_shader({"test", vertex.empty() ? "" : "vert", "", fragment.empty() ? "" : "frag", {}}, texts.files(),
                       options);
 }

@@ -41,11 +41,19 @@ const gpu::Texture &ShadowPicture::draw(gpu::Device &device, ShaderCache &shader
     near[i] = layers.near_far[std::size_t(i)].x;
     far[i] = layers.near_far[std::size_t(i)].y;
   }
+  glm::vec4 tilt_x(0.0F);
+  glm::vec4 tilt_y(0.0F);
+  for (int i = 0; i < std::min(int(layers.tilts.size()), 4); i++) {
+    tilt_x[i] = layers.tilts[std::size_t(i)].x;
+    tilt_y[i] = layers.tilts[std::size_t(i)].y;
+  }
   draw::Pass pass("shadow_picture", gpu::State::WriteColor);
   draw::ShadingGroup &group = pass.group(shaders.get(device, ShaderId::DebugShadow));
   group.bind_texture("shadow_layers", *layers.texture, sampler_);
   group.constant("near", near);
   group.constant("far", far);
+  group.constant("tilt_x", tilt_x);
+  group.constant("tilt_y", tilt_y);
   group.constant("shown", layers.shown);
   group.constant("projection", layers.projection);
   group.constant("esm_format", layers.esm_format);

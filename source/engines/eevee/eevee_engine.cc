@@ -33,6 +33,7 @@ Settings offline_settings(int sample_count)
   }
   else if (sample_count == 0 || sample_count >= fine_shadow_samples) {
     shadow.is_fitted_to_depth = true;
+    shadow.can_have_short_maps = true;
     shadow.cube_size_px *= 2;
     shadow.map_size_px *= 2;
     shadow.esm.size_px *= 2;

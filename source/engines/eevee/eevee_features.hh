@@ -71,6 +71,8 @@ enum class Feature : std::uint32_t {
   ClipPlanes = 1U << 22,
   /** Shadow layers show the whole lit surface in each sample. A constant of programs with shadows. */
   SurfaceInLayers = 1U << 23,
+  /** Lines or points are drawn. Their programs are without CoarseGrid, which discards what has no area. */
+  LinesOrPoints = 1U << 24,
 };
 
 GNOMON_MASK_OPERATORS(Feature)

@@ -87,7 +87,8 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature variant = variant_of(declaration, features);
   // With 8 bits, positions from depths are off their plane by less than the normal offset of receivers.
-  const Feature grid = device.limits().subpixel_bits < 8 ? Feature::CoarseGrid : Feature::None;
+  const bool is_on_grid = device.limits().subpixel_bits < 8 && !has(features, Feature::LinesOrPoints);
+  const Feature grid = is_on_grid ? Feature::CoarseGrid : Feature::None;
   const Key key(id, variant | ((features | grid) & constants_of(declaration, variant)), function.key);
   const auto found = shaders_.find(key);
   // The program is empty if the packet that contained its creation was lost.

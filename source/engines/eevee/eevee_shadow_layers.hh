@@ -37,9 +37,14 @@ struct ShadowLayers {
   int esm_format = -1;
   /**
    * The distances of the depths 1 (x) and 0 (y), metres. For suns, one entry for each cascade, measured along the light
-   * from the near plane of the coarsest cascade. For other lamps, one entry for all layers, measured from the lamp.
+   * from the highest point of the near planes. For other lamps, one entry for all layers, measured from the lamp.
    */
   std::vector<glm::vec2> near_far;
+  /**
+   * For each entry of `near_far` of a sun: how much larger both distances are at the right and at the upper edge of the
+   * layer, metres. `near_far` is that of the lower left corner. Empty for other lamps.
+   */
+  std::vector<glm::vec2> tilts{};
   /** Range of distances that contains all casters within the lamp's range, metres. */
   glm::vec2 shown{0.0F};
 };

@@ -5,6 +5,7 @@
 #include "render_blend_order.hh"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -36,7 +37,8 @@ void Engine::record(Data &data, gpu::Device &device)
     data.depth_clip_from_world = view.clip_from_world();
     // A perspective depth is near / distance, and its rounding error is relative to the depth. The error of an
     // orthographic depth is relative to the depth range.
-    data.depth_tolerance = view.is_perspective() ? glm::vec2(1e-5F, 0.0F) : glm::vec2(0.0F, 1e-6F);
+    const glm::vec2 rounding = view.is_perspective() ? glm::vec2(1e-5F, 0.0F) : glm::vec2(0.0F, 1e-6F);
+    data.depth_tolerance = {rounding, std::exp2(-float(device.limits().subpixel_bits))};
   }
 }
 

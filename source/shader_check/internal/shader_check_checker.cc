@@ -158,7 +158,7 @@ std::span<const std::string_view> device_features()
 }
 
 Checker::Checker(std::string name, const std::vector<std::string> &defines, const CheckSettings &settings)
-    : name_(std::move(name)), options_(settings.options), settings_(settings)
+    : name_(std::move(name)), options_(settings.options), settings_(settings), c_(settings.options.stage_errors)
 {
   for (const std::string &define : defines) {
     variant_ += (variant_.empty() ? "" : " ") + define;

@@ -18,7 +18,7 @@ bool Compilation::add(std::unique_ptr<StageSource> source, CheckTarget target, b
   const bool is_done = glslang.add(*source, target, needs_slots);
   sources.push_back(std::move(source));
   if (sources.back()->has_line_directives()) {
-    sources.back()->note_line_directives(GlslangProgram::preprocessed(*sources.back(), target), target);
+    sources.back()->note_line_directives(glslang.preprocessed(*sources.back(), target), target);
   }
   lines.emplace_back(*sources.back());
   if (has_lines) {

@@ -14,6 +14,8 @@ struct Spirv {
 
 /** One shader for one target: its sources, glslang's program, and facts about its stages. */
 struct Compilation {
+  explicit Compilation(StageErrors errors = StageErrors::First) : glslang(errors) {}
+
   /** In the order of stages. OpenGL may have several of one stage. */
   std::vector<std::unique_ptr<StageSource>> sources;
   std::vector<SourceLines> lines;

@@ -115,7 +115,7 @@ class Reader {
       set(vulkan_, stage.path, 1, fmt::format("the {} stage", to_string(stage.stage)));
     }
     read_file(stage.path);
-    if (!is_version_known_) {
+    if (!is_version_known_ && files_(stage.path)) {
       set(no_version_, stage.path, 1, "no version");
     }
   }

@@ -11,14 +11,15 @@ namespace gnomon::shader_check {
 
 namespace {
 
-/** All errors of a stage, as glslc has it: otherwise glslang ends a file at its first one. */
-constexpr auto all_errors = EShMessages(EShMsgDefault | EShMsgCascadingErrors);
-/** glslang prints columns from version 15 on. */
+EShMessages messages_for(StageErrors errors)
+{
+  unsigned messages = errors == StageErrors::All ? EShMsgDefault | EShMsgCascadingErrors : EShMsgDefault;
+  // glslang prints columns from version 15 on.
 #if GLSLANG_VERSION_GREATER_OR_EQUAL_TO(15, 0, 0)
-constexpr auto messages = EShMessages(all_errors | EShMsgDisplayErrorColumn);
-#else
-constexpr EShMessages messages = all_errors;
+  messages |= EShMsgDisplayErrorColumn;
 #endif
+  return EShMessages(messages);
+}
 
 /** Creates glslang's process-wide tables at the first use, because that takes some milliseconds. */
 void initialize_glslang()
@@ -99,7 +100,7 @@ EShLanguage glslang_language(Stage stage)
   return EShLangVertex;
 }
 
-GlslangProgram::GlslangProgram()
+GlslangProgram::GlslangProgram(StageErrors errors) : messages_(messages_for(errors))
 {
   initialize_glslang();
   program_ = std::make_unique<glslang::TProgram>();
@@ -164,7 +165,7 @@ bool GlslangProgram::add(StageSource &source, CheckTarget target, bool needs_slo
   shader.setAutoMapBindings(!needs_slots);
   shader.setAutoMapLocations(!needs_slots);
   const bool is_done = read_source(shader, source, target, [&](int version, glslang::TShader::Includer &includer) {
-    return shader.parse(GetDefaultResources(), version, false, messages, includer);
+    return shader.parse(GetDefaultResources(), version, false, messages_, includer);
   });
   log_ = shader.getInfoLog();
   program_->addShader(&shader);
@@ -176,14 +177,14 @@ std::string GlslangProgram::preprocessed(StageSource &source, CheckTarget target
   glslang::TShader shader(glslang_language(source.stage()));
   std::string text;
   read_source(shader, source, target, [&](int version, glslang::TShader::Includer &includer) {
-    return shader.preprocess(GetDefaultResources(), version, ENoProfile, false, false, messages, &text, includer);
+    return shader.preprocess(GetDefaultResources(), version, ENoProfile, false, false, messages_, &text, includer);
   });
   return text;
 }
 
 bool GlslangProgram::link()
 {
-  const bool is_done = program_->link(messages);
+  const bool is_done = program_->link(messages_);
   log_ = program_->getInfoLog();
   return is_done;
 }

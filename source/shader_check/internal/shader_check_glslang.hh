@@ -25,7 +25,7 @@ void with_large_stack(const std::function<void()> &work);
 /** The stages of one shader. Threads may use different programs concurrently. Call it only within with_large_stack. */
 class GlslangProgram {
  public:
-  GlslangProgram();
+  explicit GlslangProgram(StageErrors errors = StageErrors::First);
 
   /**
    * Compiles \a source, which must outlive the program. false on failure: log() has the reason. Sources of more than
@@ -33,7 +33,7 @@ class GlslangProgram {
    */
   bool add(StageSource &source, CheckTarget target, bool needs_slots = true);
   /** \a source after the preprocessor; up to its first mistake if it has one. */
-  [[nodiscard]] static std::string preprocessed(StageSource &source, CheckTarget target);
+  [[nodiscard]] std::string preprocessed(StageSource &source, CheckTarget target);
   /** Call it after adding all stages. false on failure: log() has the reason. */
   bool link();
   /** Log of the last call. */
@@ -56,6 +56,7 @@ class GlslangProgram {
   /** Declared after the shaders, because it refers to them until it is destroyed. */
   std::unique_ptr<glslang::TProgram> program_;
   std::string log_;
+  EShMessages messages_;
 };
 
 /** The blocks and textures of a linked program. */

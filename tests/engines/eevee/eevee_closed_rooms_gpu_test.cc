@@ -336,8 +336,9 @@ void expect_dark(const Leaks &leaks, double shining_part_max, double pixels_part
 TEST_F(ClosedRoomsGpuTest, AreBlackExceptForFewPixels)
 {
   // The error of shadows grows with the size of texels.
-  // Measured: 0.2, 1.8e-3.
-  expect_dark(leaks_of(0, room_pairs, 512), 0.25, 2.5e-3);
+  // Measured: 0.2, 1.8e-3. Where edges are moved to a grid of 1/16 texels (SwiftShader): 0.35, 3.1e-3.
+  const bool is_coarse = device->limits().subpixel_bits < 8;
+  expect_dark(leaks_of(0, room_pairs, 512), is_coarse ? 0.4 : 0.25, is_coarse ? 3.5e-3 : 2.5e-3);
 }
 
 class SlowClosedRoomsGpuTest : public ClosedRoomsGpuTest {};

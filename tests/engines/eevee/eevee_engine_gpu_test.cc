@@ -434,7 +434,7 @@ TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
-  const auto null_device = gpu::create_null_device();
+  const auto null_device = gpu::create_null_device(device->limits());
   const draw::TargetTexture gl_target(*device, "display", gpu::Format::RGBA8, {16, 16});
   const draw::TargetTexture null_target(*null_device, "display", gpu::Format::RGBA8, {16, 16});
   Renderer gl(*device, scene, {16, 16});

@@ -108,6 +108,18 @@ TEST_F(MemoryGpuTest, EachTurnOfScenesLeavesAsMuchAllocated)
   EXPECT_LE(std::min({draw_all(), draw_all(), draw_all()}), first_mib + 1.0);
 }
 
+/** Four maps of this size with 32 bits, and their size without short depths, take 256 MiB. */
+TEST_F(MemoryGpuTest, MapsOfPicturesOf64SamplesHaveFewTexelsOf16Bits)
+{
+  const scene::Scene scene = gltf::import_gltf(GNOMON_SOURCE "/examples/scenes/plaza.glb");
+  SceneRenderer renderer(*device, scene, {640, 360}, offline_settings(64));
+  renderer.sync();
+  renderer.draw_sample(scene.placed_cameras().front());
+  const gpu::Texture &maps = renderer.inspect().shadows().scene().maps();
+  EXPECT_EQ(maps.desc().format, gpu::Format::Depth16);
+  EXPECT_LE(double(maps.desc().size_bytes()) / 0x1p20, 72.0);
+}
+
 TEST_F(SlowMemoryGpuTest, StaysFlatOver200ScenesThatAreLoaded)
 {
   double resident = 0.0;

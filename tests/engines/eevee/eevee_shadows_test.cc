@@ -115,6 +115,7 @@ glm::vec3 row_z(const shared::ShadowMapData &map)
 
 TEST_F(ShadowsTest, MapsHaveShortDepthsWhileTheirErrorIsATenthOfATexel)
 {
+  constexpr float short_rounding = short_depth_half_step + shared::DEPTH_ROUNDING;
   add_lamp(scene::LampKind::Spot, "spot");
   add_lamp(scene::LampKind::Sun, "sun");
   settings.can_have_short_maps = true;
@@ -122,8 +123,8 @@ TEST_F(ShadowsTest, MapsHaveShortDepthsWhileTheirErrorIsATenthOfATexel)
   update();
   EXPECT_EQ(scene_shadows.maps().desc().format, gpu::Format::Depth16);
   // A sun's depth is 1 over the length of the map, so that this is the length times the error.
-  EXPECT_NEAR(shadows.block_data().maps[1].rounding * glm::length(row_z(shadows.block_data().maps[1])),
-              short_depth_rounding, 1e-3F * short_depth_rounding);
+  EXPECT_NEAR(shadows.block_data().maps[1].rounding * glm::length(row_z(shadows.block_data().maps[1])), short_rounding,
+              1e-3F * short_rounding);
   // A caster just before the spot moves the near plane to it. The error at the box grows with the square of the
   // distance.
   casters.push_back(box_at({0, 0, -0.02F}, 0.01F));

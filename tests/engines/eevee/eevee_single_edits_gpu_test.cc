@@ -2,6 +2,7 @@
 // Each edit of a scene and each setting, alone and in random order, under live renderers: the pictures are those of
 // renderers that are made after the edit.
 #include "eevee_scene_renderer.hh"
+#include "eevee_test_scene.hh"
 #include "engines/scene_edits.hh"
 
 #include "gpu_device_fixture.hh"
@@ -320,9 +321,7 @@ TEST_F(SingleEditsGpu, OfEachSettingGiveThePictureOfANewRenderer)
     for (const SettingEdit &edit : edits) {
       Settings changed = settings;
       edit.change(changed);
-      const LayerPass pass = changed.shadow.layer_pass;
-      if ((pass == LayerPass::Layered && !device->limits().has_vertex_layer) ||
-          (pass == LayerPass::Geometry && !device->limits().has_geometry_shader)) {
+      if (!test::has_layer_pass(device->limits(), changed.shadow.layer_pass)) {
         continue;
       }
       live.set_settings(changed);

@@ -324,15 +324,15 @@ struct SunScene {
     casters.push_back(caster);
   }
   [[nodiscard]] std::vector<SunFit> fits(const SeenGroundPicture &picture, bool is_fitted, int count, float pixel_size,
-                                         bool can_resize = false,
-                                         double texel_in_pixels_enlarged = texel_in_pixels) const
+                                         bool can_resize = false, double texel_in_pixels_enlarged = texel_in_pixels,
+                                         int edge_max_px = 0) const
   {
     const VisibleRange visible = visible_range(picture.view, visible_corners(picture.view, all));
     const std::vector<VisibleCluster> clusters = is_fitted ? picture.clusters() : std::vector<VisibleCluster>();
-    const int asked_px = can_resize ? int(std::lround(size_px * resize_step)) : size_px;
+    const int asked_px = can_resize ? int(std::lround(size_px * size_growth_max)) : size_px;
     const CascadeSettings cascades{
         .count = count, .can_resize = can_resize, .texel_in_pixels_enlarged = texel_in_pixels_enlarged};
-    return fit_sun(sun, picture.view, visible, casters, asked_px, cascades, pixel_size, {}, 0.0, clusters);
+    return fit_sun(sun, picture.view, visible, casters, asked_px, cascades, pixel_size, {}, 0.0, clusters, edge_max_px);
   }
 
   static constexpr int size_px = 512;
@@ -390,10 +390,12 @@ TEST(FittedCascades, ShowTheirNeededBoxWithTheFilterAroundIt)
     turned_count += fit.turn != 0.0;
     const glm::dmat3 world_from_fit = glm::transpose(turned(glm::transpose(glm::dmat3(scene.sun)), fit.turn));
     for (int i = 0; i < 8; i++) {
-      const glm::dvec3 corner((i & 1) != 0 ? fit.needed_max.x : fit.needed_min.x,
-                              (i & 2) != 0 ? fit.needed_max.y : fit.needed_min.y,
-                              (i & 4) != 0 ? fit.needed_max.z : fit.needed_min.z);
-      EXPECT_TRUE(is_in_map(fit, world_from_fit * corner)) << fit.turn;
+      const glm::dvec2 corner((i & 1) != 0 ? fit.needed_max.x : fit.needed_min.x,
+                              (i & 2) != 0 ? fit.needed_max.y : fit.needed_min.y);
+      const double z = glm::dot(fit.slope, corner) + ((i & 4) != 0 ? fit.max.z : fit.min.z);
+      // The depths are floats.
+      const double inwards = (i & 4) != 0 ? -1e-4 : 1e-4;
+      EXPECT_TRUE(is_in_map(fit, world_from_fit * glm::dvec3(corner, z + inwards))) << fit.turn;
     }
   }
   EXPECT_GT(turned_count, 0);
@@ -441,6 +443,11 @@ double mean_error(const std::vector<SunFit> &fits, const SeenGroundPicture &pict
   return sum / weight;
 }
 
+double texel_count(const std::vector<SunFit> &fits)
+{
+  return double(fits.size()) * fits[0].size_px * fits[0].size_px;
+}
+
 TEST(FittedCascades, HaveFinerTexelsThanSlicesOfTheView)
 {
   const SunScene scene;
@@ -463,16 +470,15 @@ TEST(FittedCascades, HaveTheSizeThatThePictureNeeds)
     const std::vector<SunFit> fits = scene.fits(picture, true, 0, float(pixel), true);
     for (const SunFit &fit : fits) {
       EXPECT_EQ(fit.size_px, fits[0].size_px);
-      EXPECT_LE(fit.size_px, std::lround(SunScene::size_px * resize_step));
+      EXPECT_LE(fit.size_px, std::lround(SunScene::size_px * size_growth_max));
     }
     if (fits[0].size_px < SunScene::size_px) {
       smaller++;
       // Below twice the square, because texel() is the longer edge of a texel.
       EXPECT_LT(mean_error(fits, picture, pixel), 2.0 * texel_in_pixels * texel_in_pixels) << pixel;
     }
-    if (fits[0].size_px > SunScene::size_px) {
+    if (fits[0].size_px > std::ceil(SunScene::size_px * short_depth_gain)) {
       larger++;
-      EXPECT_EQ(fits.size(), std::size_t(cascade_count_max));
       EXPECT_GT(mean_error(fits, picture, pixel), texel_in_pixels * texel_in_pixels);
     }
   }
@@ -488,23 +494,100 @@ TEST(FittedCascades, AreEnlargedOnlyAboveTheLimitForTexels)
   int kept = 0;
   int enlarged = 0;
   for (float pixel = 0.01F; pixel < 3.0F; pixel *= 1.25F) {
-    const int always_px = scene.fits(picture, true, 0, pixel, true)[0].size_px;
+    const double always = texel_count(scene.fits(picture, true, 0, pixel, true));
+    const double never = texel_count(scene.fits(picture, true, 0, pixel, true, 1e9));
     const std::vector<SunFit> fits = scene.fits(picture, true, 0, pixel, true, limit);
-    if (always_px > SunScene::size_px && fits[0].size_px == SunScene::size_px) {
+    EXPECT_TRUE(texel_count(fits) == always || texel_count(fits) == never) << pixel;
+    if (always > never && texel_count(fits) == never) {
       kept++;
       // Below twice the square, because texel() is the longer edge of a texel.
       EXPECT_LT(mean_error(fits, picture, pixel), 2.0 * limit * limit) << pixel;
-      continue;
     }
-    EXPECT_EQ(fits[0].size_px, always_px) << pixel;
-    if (always_px > SunScene::size_px) {
+    if (always > never && texel_count(fits) == always) {
       enlarged++;
-      const double growth = double(always_px) / SunScene::size_px;
-      EXPECT_GT(growth * growth * mean_error(fits, picture, pixel), limit * limit) << pixel;
+      EXPECT_GT(size_growth_max * size_growth_max * mean_error(fits, picture, pixel), limit * limit) << pixel;
     }
   }
   EXPECT_GE(kept, 1);
   EXPECT_GE(enlarged, 1);
+}
+
+TEST(FittedCascades, HaveTheFewestTexelsOfTheirError)
+{
+  const SunScene scene;
+  // Seen from afar, all of the ground has pixels of about one size, so that one map is best.
+  const SeenGroundPicture picture(
+      draw::View(looking_down_from({1, 20, 4}), draw::perspective(0.1F, 0.08F, 0.1F, 1000.0F)));
+  int fewer = 0;
+  for (float pixel = 0.01F; pixel < 3.0F; pixel *= 1.25F) {
+    const std::vector<SunFit> shared = scene.fits(picture, true, 0, pixel, true);
+    const std::vector<SunFit> alone = scene.fits(picture, true, 0, pixel, true, texel_in_pixels, 2 * SunScene::size_px);
+    EXPECT_LE(texel_count(alone), texel_count(shared)) << pixel;
+    if (texel_count(alone) < texel_count(shared)) {
+      fewer++;
+      // The error is that of both edges of texels, and texel() is the longer one.
+      EXPECT_LT(mean_error(alone, picture, pixel), 1.5 * mean_error(shared, picture, pixel)) << pixel;
+    }
+    // No number of maps of the same size has fewer texels and less error.
+    for (int count = 1; count <= cascade_count_max; count++) {
+      const std::vector<SunFit> other = scene.fits(picture, true, count, pixel);
+      EXPECT_FALSE(1.1 * texel_count(other) < texel_count(alone) &&
+                   1.5 * mean_error(other, picture, pixel) < mean_error(alone, picture, pixel))
+          << pixel << ", " << count;
+    }
+  }
+  EXPECT_GE(fewer, 1);
+}
+
+TEST(FittedCascades, HaveDepthsFromAPlaneAlongTheReceivers)
+{
+  // A ground without an end, seen from near: along the light, it is as long as the ground.
+  SunScene scene;
+  scene.sun[2] = glm::vec4(glm::normalize(glm::vec3(1, 0.2F, 0.1F)), 0);
+  scene.sun[0] = glm::vec4(glm::normalize(glm::cross(glm::vec3(0, 1, 0), glm::vec3(scene.sun[2]))), 0);
+  scene.sun[1] = glm::vec4(glm::cross(glm::vec3(scene.sun[2]), glm::vec3(scene.sun[0])), 0);
+  const SeenGroundPicture picture(ground_views[0]);
+  for (const SunFit &fit : scene.fits(picture, true, cascade_count_max, 0.01F)) {
+    const glm::dmat3 world_from_fit = glm::transpose(turned(glm::transpose(glm::dmat3(scene.sun)), fit.turn));
+    const double length = fit.max.z - fit.min.z;
+    EXPECT_LT(length, 0.6 * fit.caster_length);
+    for (int i = 0; i < 25; i++) {
+      const glm::dvec2 at = glm::mix(glm::dvec2(fit.min), glm::dvec2(fit.max), glm::dvec2(i % 5, i / 5) / 4.0);
+      for (const double height : {0.0, 0.25, 1.0}) {
+        const double z = glm::dot(fit.slope, at) + fit.min.z + height * length;
+        const glm::dvec4 clip =
+            glm::dmat4(fit.view.clip_from_world()) * glm::dvec4(world_from_fit * glm::dvec3(at, z), 1.0);
+        // The matrix is one of floats.
+        EXPECT_NEAR(clip.z, height, 1e-6 * fit.caster_length / length) << at.x << ", " << at.y;
+        EXPECT_EQ(clip.w, 1.0);
+      }
+    }
+  }
+}
+
+TEST(DepthRange, IsZeroOnAPlaneAndHoldsAllPoints)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int trial = 0; trial < 50; trial++) {
+    const glm::dvec2 slope(10.0 * unit(random), 10.0 * unit(random));
+    const double height = trial % 2 == 0 ? 0.0 : 0.1;
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < 40; i++) {
+      const glm::dvec2 at(100.0 + 20.0 * unit(random), 20.0 * unit(random));
+      points.emplace_back(at, 5.0 + glm::dot(slope, at) + height * unit(random));
+    }
+    const DepthRange range = depth_range(points);
+    EXPECT_LE(range.max - range.min, 3.0 * height + 1e-9);
+    for (const glm::dvec3 &point : points) {
+      const double distance = point.z - glm::dot(range.slope, glm::dvec2(point));
+      EXPECT_LE(range.min, distance);
+      EXPECT_GE(range.max, distance);
+    }
+  }
+  // Points on a line have no plane, and a single one has no range.
+  EXPECT_EQ(depth_range(std::vector<glm::dvec3>{{1, 1, 2}, {2, 2, 5}}).slope, glm::dvec2(0.0));
+  EXPECT_EQ(depth_range(std::vector<glm::dvec3>{{1, 2, 3}}).max, 3.0);
 }
 
 TEST(FittedCascades, AreAsManyAsThePictureNeeds)

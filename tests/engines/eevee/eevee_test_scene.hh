@@ -36,11 +36,19 @@ inline void remove_objects(scene::Scene &scene)
   }
 }
 
-/** A sphere of radius 1 with its normals. */
-inline scene::Handle<scene::Mesh> add_sphere_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
+/** Whether a device with these limits draws shadow layers in this way. */
+inline bool has_layer_pass(const gpu::Limits &limits, eevee::LayerPass pass)
 {
-  constexpr int columns = 128;
-  constexpr int rows = 64;
+  return pass == eevee::LayerPass::Layered    ? limits.has_vertex_layer
+         : pass == eevee::LayerPass::Geometry ? limits.has_geometry_shader
+                                              : true;
+}
+
+/** A sphere of radius 1 with its normals. It has \a columns squared triangles. */
+inline scene::Handle<scene::Mesh> add_sphere_mesh(scene::Scene &scene, scene::Handle<scene::Material> material,
+                                                  int columns = 128)
+{
+  const int rows = columns / 2;
   scene::Mesh mesh;
   for (int y = 0; y <= rows; y++) {
     for (int x = 0; x <= columns; x++) {
@@ -50,7 +58,8 @@ inline scene::Handle<scene::Mesh> add_sphere_mesh(scene::Scene &scene, scene::Ha
                                   std::cos(polar));
       if (x < columns && y < rows) {
         const auto first = std::uint32_t(y * (columns + 1) + x);
-        for (const std::uint32_t i : {0U, columns + 1U, columns + 2U, 0U, columns + 2U, 1U}) {
+        const auto next_row = std::uint32_t(columns + 1);
+        for (const std::uint32_t i : {0U, next_row, next_row + 1, 0U, next_row + 1, 1U}) {
           mesh.indices.push_back(first + i);
         }
       }

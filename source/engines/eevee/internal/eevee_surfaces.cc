@@ -98,10 +98,11 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
   gpu::Device &device = recording.scene.device();
   const scene::Scene &scene = recording.scene.scene();
   const SurfaceInputs &inputs = recording.inputs;
-  const Feature features = inputs.features;
   const Feature clip = inputs.is_clipped ? Feature::ClipPlanes : Feature::None;
   const render_scene::RenderObject &object = recording.scene.object(first);
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
+  const Feature shape = mesh.topology == scene::Topology::Triangles ? Feature::None : Feature::LinesOrPoints;
+  const Feature features = inputs.features | shape;
   const scene::Material &material = scene.material_of(mesh);
   const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
   const MaterialClass material_class = render_scene::material_class(scene, mesh);
@@ -154,13 +155,13 @@ SurfacePasses::Kind SurfacePasses::record_kind(const Recording &recording, draw:
     draw::Pass &depth_pass = is_transmissive ? transmission_.depth_pass() : depth_.depth_pass(material.is_double_sided);
     const gpu::Shader &depth_shader =
         recording.shaders.get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth,
-                              mask_features(cut_out) | clip, alpha_function);
+                              mask_features(cut_out) | clip | shape, alpha_function);
     add(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures);
   }
   if (lit_shader) {
     add(is_transmissive ? transmission_.pass() : pass_, *lit_shader, side, surface, surface_textures);
   }
-  record_inspection(kind, recording, {surface, surface_textures, function, lighting, side | fixed});
+  record_inspection(kind, recording, {surface, surface_textures, function, lighting, shape, side | fixed});
   return kind;
 }
 
@@ -168,9 +169,9 @@ void SurfacePasses::record_inspection(Kind &kind, const Recording &recording, co
 {
   gpu::Device &device = recording.scene.device();
   const SurfaceInputs &inputs = recording.inputs;
-  const auto &[surface, textures, function, lighting, state] = inspected;
+  const auto &[surface, textures, function, lighting, shape, state] = inspected;
   if (inputs.tinted_entry && surface != MaterialClass::Transmissive) {
-    add_group(kind, recording, tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, inputs.features),
+    add_group(kind, recording, tint_pass_, recording.shaders.get(device, ShaderId::DebugCascades, inputs.features | shape),
               state, MaterialClass::Plain, {}, [&](draw::ShadingGroup &group) {
                 recording.bind(group);
                 group.constant("tinted_light", *inputs.tinted_entry);
@@ -179,7 +180,7 @@ void SurfacePasses::record_inspection(Kind &kind, const Recording &recording, co
   if (inputs.has_surfaces) {
     // The program reads normals also where nothing gives light.
     add_group(kind, recording, probe_.surfaces_pass(),
-              recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), state,
+              recording.shaders.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface) | shape, function), state,
               surface, textures, recording.bind);
   }
   if (inputs.has_probe && has(inputs.features, Feature::Light)) {

@@ -114,6 +114,8 @@ class SurfacePasses {
     FunctionText function{};
     /** Features of a program that lights them. */
     Feature lighting = Feature::None;
+    /** LinesOrPoints or None. */
+    Feature shape = Feature::None;
     gpu::State state = gpu::State::None;
   };
   void record_inspection(Kind &kind, const Recording &recording, const Inspected &inspected);

@@ -150,20 +150,31 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
 void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
 {
   int size_px = 0;
+  int planned_px = 0;
+  int layers_max = 0;
   bool has_content = false;
   for_each_slot([&](const ShadowSlot &slot) {
     if (slot.place.given.array == id) {
+      planned_px = std::max(planned_px, slot.place.given.size_px);
+      layers_max += slot.place.given.layer_count_max;
       size_px = std::max(size_px, slot.size_px);
       // The distance cube is temporary: its texels are not needed after the octahedral layer was filtered.
       has_content = has_content || ((slot.drawn != 0 || slot.partial) && id != ShadowArrayId::DistanceCube);
     }
   });
   LayerArray &array = state_->arrays[std::size_t(id)];
-  const int size_now = array.texture() ? array.texture().desc().width : 0;
-  if (id == ShadowArrayId::Maps && settings_.cascades.can_resize && size_now >= size_px &&
-      size_now <= size_px + size_px / 2) {
-    // Small changes of the needed size do not justify a new texture.
-    size_px = size_now;
+  if (id == ShadowArrayId::Maps && array.texture()) {
+    // Small changes of the needed size do not justify a new texture, and a view that needs more cascades than the last
+    // view should seldom need one. Together, both may be more than what was planned.
+    const int size_now = array.texture().desc().width;
+    const bool is_near = size_now >= size_px && size_now <= size_px + size_px / 2;
+    const int kept_px = settings_.cascades.can_resize && is_near ? size_now : size_px;
+    const int kept_layers = std::max(layers, std::min(array.layer_count(), layers_max));
+    const auto texels = [](int edge_px, int count) { return std::int64_t(edge_px) * edge_px * count; };
+    if (texels(kept_px, kept_layers) <= texels(planned_px, layers_max)) {
+      size_px = kept_px;
+      layers = kept_layers;
+    }
   }
   array.resize(device, size_px, layers, has_content);
   state_->bindings[std::size_t(id)] =
@@ -220,7 +231,8 @@ void SceneShadows::finish()
 
 /**
  * Give the maps 16-bit depths if they may have them and all have a small error. Maps with 32 bits keep them, so that
- * no movement of the camera changes the format again and again.
+ * no movement of the camera changes the format again and again. Maps that are fitted to depths do not, because a
+ * picture must not depend on the pictures before it.
  */
 void SceneShadows::choose_map_format()
 {
@@ -228,17 +240,22 @@ void SceneShadows::choose_map_format()
   const bool has_long_maps = maps.texture() && maps.format() == gpu::Format::Depth32F;
   scene::Bounds surfaces_ws = bounds_ws_;
   surfaces_ws.extend(state_->casters.bounds_ws());
-  bool is_short = settings_.can_have_short_maps && !has_long_maps;
+  const bool is_fitted = settings_.is_fitted_to_depth;
+  const double error_max = is_fitted ? fitted_short_depth_error_max : short_depth_error_max;
+  bool is_short = settings_.can_have_short_maps && (is_fitted || !has_long_maps);
   for_each_slot([&](const ShadowSlot &slot) {
-    is_short = is_short && (slot.place.given.array != ShadowArrayId::Maps ||
-                            short_depth_error(slot, surfaces_ws) <= short_depth_error_max);
+    if (slot.place.given.array == ShadowArrayId::Maps && !slot.views.empty()) {
+      // Only depths that are fitted, too, have steps without an effect on pictures of many samples.
+      const bool has_fitted_depths = !slot.fits.empty() && !slot.fits.front().is_stable;
+      is_short = is_short && (has_fitted_depths || !is_fitted) && short_depth_error(slot, surfaces_ws) <= error_max;
+    }
   });
   const gpu::Format format = is_short ? gpu::Format::Depth16 : gpu::Format::Depth32F;
   const bool is_changed = format != maps.format();
   maps.set_format(format);
   for_each_slot([&](ShadowSlot &slot) {
     if (slot.place.given.array == ShadowArrayId::Maps) {
-      slot.depth_rounding = is_short ? short_depth_rounding : shared::DEPTH_ROUNDING;
+      slot.depth_half_step = is_short ? short_depth_half_step : 0.0F;
       slot.invalidate(is_changed ? ~0U : 0U);
     }
   });
@@ -251,7 +268,6 @@ void SceneShadows::place_maps(gpu::Device &device)
     return;
   }
   choose_map_format();
-  int layers_max = 0;
   const auto place_all = [&](auto &&is_placed) {
     for_each_slot([&](ShadowSlot &slot) {
       if (slot.place.given.array == ShadowArrayId::Maps && is_placed(slot)) {
@@ -260,7 +276,6 @@ void SceneShadows::place_maps(gpu::Device &device)
           slot.place.first_layer = first_layer;
           slot.invalidate(~0U);
         }
-        layers_max += slot.place.given.layer_count_max;
       }
     });
   };
@@ -273,13 +288,9 @@ void SceneShadows::place_maps(gpu::Device &device)
   if (state_->map_runs.end() > state_->plan.map_layers_max) {
     // With the gaps between runs, the array exceeds the limit. Place all runs again without gaps.
     state_->map_runs.clear();
-    layers_max = 0;
     place_all([](const ShadowSlot & /*slot*/) { return true; });
   }
-  // The array keeps its layers, up to the maximum of the current lamps, so that a view that needs more cascades than
-  // the last view seldom needs a new texture.
-  const int layers_now = array(ShadowArrayId::Maps).layer_count();
-  resize(device, ShadowArrayId::Maps, std::max(state_->map_runs.end(), std::min(layers_now, layers_max)));
+  resize(device, ShadowArrayId::Maps, state_->map_runs.end());
 }
 
 void SceneShadows::invalidate()

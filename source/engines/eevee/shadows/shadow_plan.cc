@@ -293,6 +293,16 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
                                       too_large.size(), device_limits.texture_size_max, listed(too_large)));
   }
   fit_memory(plan, conditions);
+  for (ShadowPlace &place : plan.places) {
+    const ShadowRequest &given = place.given;
+    const bool is_alone = viewport_count <= 1 && std::ranges::count_if(plan.places, [&](const ShadowPlace &other) {
+                                                   return other.given.array == given.array;
+                                                 }) == 1;
+    const bool is_larger = is_alone && given.can_have_larger_layers;
+    place.edge_max_px = is_larger ? std::min(int(given.size_px * std::sqrt(double(given.layer_count_max))),
+                                             device_limits.texture_size_max)
+                                  : given.size_px;
+  }
   place_layers(plan, conditions);
   return plan;
 }

@@ -76,6 +76,8 @@ struct ShadowRequest {
   int entry_count = 1;
   /** Edge of each layer, texels. */
   int size_px = 0;
+  /** Whether fewer layers may be larger, \see ShadowPlace::edge_max_px. */
+  bool can_have_larger_layers = false;
   /** Edge of the octahedral layer without its border, texels. 0 if there is none. */
   int octahedral_px = 0;
   int octahedral_texel_bytes = 0;
@@ -91,6 +93,11 @@ struct ShadowPlace {
   scene::ShadowKind kind = scene::ShadowKind::Hard;
   /** The request, with sizes reduced to the limits of the device and of the memory. */
   ShadowRequest given{};
+  /**
+   * The largest edge of a layer, texels. Above the size of the request, all layers have no more texels together than
+   * requested. Lamps that share an array do not have larger layers, because its layers have one size.
+   */
+  int edge_max_px = 0;
   /** First entry in the uniform block, in the order of the lamps. A change of the entry does not invalidate layers. */
   int entry = 0;
   /** First layer in the array. -1 for maps: their layers are assigned later, as their number depends on the view. */

@@ -27,12 +27,19 @@ draw::View shadow_spot_view(const glm::mat4 &world_from_lamp, float outer_angle,
   return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
-/** Error at w = 1, metres, of a depth with the error \a rounding. It grows with w². */
-static float metres_of(float rounding, const draw::View &view)
+/**
+ * Bound of the error of the depths in layer \a i at w = 1, metres. It grows with w². \a half_step: \see
+ * ShadowSlot::depth_half_step
+ */
+static float depth_error(const ShadowSlot &slot, std::size_t i, float half_step)
 {
-  const glm::mat4 &projection = view.clip_from_view();
+  const glm::mat4 &projection = slot.views[i].clip_from_view();
   // Reversed depth: near / w for a spot, where w is a distance, and (far - z) / (far - near) for a sun.
-  return rounding / (view.is_perspective() ? projection[3][2] : projection[2][2]);
+  if (slot.views[i].is_perspective()) {
+    return (half_step + shared::DEPTH_ROUNDING) / projection[3][2];
+  }
+  // Depths of clamped casters are rounded before they are clamped.
+  return half_step / projection[2][2] + shared::DEPTH_ROUNDING * float(slot.fits[i].caster_length);
 }
 
 /** Longer edge of a texel at w = 1, metres. It grows with w. */
@@ -48,8 +55,9 @@ double short_depth_error(const ShadowSlot &slot, const scene::Bounds &bounds_ws)
   const float reach = glm::length(reach_from(slot.lamp.position_ws(), bounds_ws));
   const float w = slot.lamp.kind == scene::LampKind::Sun ? 1.0F : std::min(reach, slot.lamp.shadow_range());
   double largest = 0.0;
-  for (const draw::View &view : slot.views) {
-    largest = std::max(largest, double(metres_of(short_depth_rounding, view)) * w / texel_of(slot, view));
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    const double error = depth_error(slot, i, short_depth_half_step);
+    largest = std::max(largest, error * w / texel_of(slot, slot.views[i]));
   }
   return largest;
 }
@@ -63,7 +71,7 @@ void MapTechnique::write_block(const ShadowSlot &slot, shared::ShadowBlock &bloc
     const draw::View &view = slot.views[i];
     data.texco_from_world = texcomat * view.clip_from_world();
     data.texel_size = texel_of(slot, view);
-    data.rounding = metres_of(slot.depth_rounding, view);
+    data.rounding = depth_error(slot, i, slot.depth_half_step);
     data.far = view.is_perspective() ? slot.lamp.shadow.clip_end.value_or(shadow_far_none) : shadow_far_none;
     data.bias = slot.lamp.shadow.bias.value_or(1.0F);
     data.layer = slot.place.first_layer + int(i);
@@ -86,7 +94,8 @@ double MapTechnique::texel_size(const ShadowSlot &slot, const ShadowInspection &
     const shared::ShadowMapData &map = block.maps[i];
     const glm::dvec4 texco = glm::dmat4(map.texco_from_world) * glm::dvec4(position_ws, 1.0);
     const glm::dvec2 uv = glm::dvec2(texco) / texco.w;
-    if (texco.w > 0.0 && std::min({uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y}) > 0.0) {
+    const bool is_in_depths = map.cascade_count == 1 || (texco.z >= 0.0 && texco.z <= 1.0);
+    if (texco.w > 0.0 && is_in_depths && std::min({uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y}) > 0.0) {
       return double(map.texel_size) * texco.w;
     }
   }

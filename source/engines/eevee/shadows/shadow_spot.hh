@@ -25,10 +25,12 @@ inline constexpr float spot_map_angle_max = 1.04F;
 /** Planar shadow maps of spots up to spot_map_angle_max. */
 [[nodiscard]] const ShadowTechnique &shadow_spot_technique();
 
-/** Bound of the error of 16-bit depths: half a step, and the error of the depth before it is rounded. */
-inline constexpr float short_depth_rounding = 0.5F / 65535.0F + shared::DEPTH_ROUNDING;
+/** Half a step of 16-bit depths. */
+inline constexpr float short_depth_half_step = 0.5F / 65535.0F;
 /** Maps whose 16-bit depths would have a larger error have 32-bit depths, texels. \see shared::NORMAL_OFFSET_TEXELS */
 inline constexpr double short_depth_error_max = 0.1;
+/** The same for maps that are fitted to depths, which serve pictures of many samples. */
+inline constexpr double fitted_short_depth_error_max = 0.05;
 /**
  * The largest error of 16-bit depths in the maps of a spot or a sun, in texels at the surface. \a bounds_ws: of all
  * surfaces.

@@ -3,7 +3,9 @@
 
 #include "shadow_spot.hh"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -40,11 +42,12 @@ class SunTechnique final : public MapTechnique {
                         const ShadowSettings &settings) const override
   {
     const int cascades = cascade_count(lamp, settings) > 0 ? cascade_count(lamp, settings) : cascade_count_max;
-    const double growth = is_resized(lamp, settings) ? resize_step : 1.0;
+    const double growth = is_resized(lamp, settings) ? size_growth_max : 1.0;
     return {.array = ShadowArrayId::Maps,
             .layer_count_max = cascades,
             .entry_count = cascades,
-            .size_px = int(std::lround(growth * lamp.shadow.size.value_or(settings.map_size_px)))};
+            .size_px = int(std::lround(growth * lamp.shadow.size.value_or(settings.map_size_px))),
+            .can_have_larger_layers = is_resized(lamp, settings) && settings.cascades.count == 0};
   }
 
   ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
@@ -69,7 +72,8 @@ class SunTechnique final : public MapTechnique {
     slot.new_fits =
         fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(), slot.place.given.size_px, cascades,
                 view.pixel_size, std::move(slot.new_fits), slot.lamp.extent,
-                is_fitted(slot.lamp, settings) ? std::span(view.visible.clusters) : std::span<const VisibleCluster>());
+                is_fitted(slot.lamp, settings) ? std::span(view.visible.clusters) : std::span<const VisibleCluster>(),
+                slot.place.edge_max_px);
     const std::vector<SunFit> &fits = slot.new_fits;
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);
@@ -104,9 +108,16 @@ class SunTechnique final : public MapTechnique {
   {
     ShadowLayers layers = depth_layers(slot, inspection);
     layers.projection = PROJECTION_ORTHOGRAPHIC;
-    const double top = slot.fits.empty() ? 0.0 : slot.fits.back().max.z;
+    double top = -std::numeric_limits<double>::infinity();
     for (const SunFit &fit : slot.fits) {
-      layers.near_far.emplace_back(top - fit.max.z, top - fit.min.z);
+      // The highest point of the near plane.
+      const glm::dvec2 highest = glm::max(fit.slope * glm::dvec2(fit.min), fit.slope * glm::dvec2(fit.max));
+      top = std::max(top, fit.max.z + highest.x + highest.y);
+    }
+    for (const SunFit &fit : slot.fits) {
+      const double corner = top - glm::dot(fit.slope, glm::dvec2(fit.min));
+      layers.near_far.emplace_back(corner - fit.max.z, corner - fit.min.z);
+      layers.tilts.emplace_back(-fit.slope * glm::dvec2(fit.max - fit.min));
     }
     layers.shown = layers.near_far.empty() ? glm::vec2(0.0F) : layers.near_far.back();
     return layers;

@@ -123,6 +123,21 @@ double inner_share(int size_px)
   return std::max(1.0 - 2.0 * margin_texels / size_px, 0.5);
 }
 
+/** Set the view of \a fit from its box. \a lamp_from_world: to the axes of the box. */
+void set_view(SunFit &fit, const glm::dmat3 &lamp_from_world)
+{
+  const glm::dvec2 across(0.5 * (fit.min + fit.max));
+  const glm::dvec3 center(across, 0.5 * (fit.min.z + fit.max.z) + glm::dot(fit.slope, across));
+  const glm::dvec3 half = 0.5 * (fit.max - fit.min);
+  glm::dmat4 view_from_world(lamp_from_world);
+  view_from_world[3] = glm::dvec4(-center, 1.0);
+  glm::mat4 clip_from_view = draw::orthographic(float(half.x), float(half.y), float(-half.z), float(half.z));
+  for (int axis = 0; axis < 2; axis++) {
+    clip_from_view[axis][2] = float(-fit.slope[axis] * double(clip_from_view[2][2]));
+  }
+  fit.view = draw::View(glm::mat4(view_from_world), clip_from_view);
+}
+
 /** \a lamp_from_world: to the axes of the box. \a is_stable: whether the extent has slack and steps, and the corner a
  * grid. */
 SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size_px, bool is_stable)
@@ -153,16 +168,60 @@ SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size
   }
   fit.min.z = needed.min.z - slack * size;
   fit.max.z = needed.max.z + slack * size;
-  const glm::dvec3 center = 0.5 * (fit.min + fit.max);
-  const glm::dvec3 half = 0.5 * (fit.max - fit.min);
-  glm::dmat4 view_from_world(lamp_from_world);
-  view_from_world[3] = glm::dvec4(-center, 1.0);
-  fit.view = draw::View(glm::mat4(view_from_world),
-                        draw::orthographic(float(half.x), float(half.y), float(-half.z), float(half.z)));
+  fit.caster_length = fit.max.z - fit.min.z;
+  set_view(fit, lamp_from_world);
   return fit;
 }
 
+/** Limit the depths of \a fit to those of \a receivers, which are in its axes. */
+void fit_depths(SunFit &fit, const glm::dmat3 &lamp_from_world, std::span<const glm::dvec3> receivers)
+{
+  const DepthRange range = depth_range(receivers);
+  fit.slope = range.slope;
+  // Lookups are offset from receivers, and read the texels around them.
+  const double margin = slack * (range.max - range.min) + margin_texels * fit.texel();
+  fit.min.z = range.min - margin;
+  fit.max.z = range.max + margin;
+  fit.caster_length = std::max(fit.caster_length, fit.max.z - fit.min.z);
+  set_view(fit, lamp_from_world);
+}
+
 }  // namespace
+
+DepthRange depth_range(std::span<const glm::dvec3> points)
+{
+  glm::dvec3 mean(0.0);
+  for (const glm::dvec3 &point : points) {
+    mean += point / double(points.size());
+  }
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  glm::dvec2 z(0.0);
+  for (const glm::dvec3 &point : points) {
+    const glm::dvec3 p = point - mean;
+    xx += p.x * p.x;
+    xy += p.x * p.y;
+    yy += p.y * p.y;
+    z += p.z * glm::dvec2(p);
+  }
+  const auto range_along = [&](const glm::dvec2 &slope) {
+    DepthRange range{slope, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const glm::dvec3 &point : points) {
+      const double distance = point.z - glm::dot(slope, glm::dvec2(point));
+      range.min = std::min(range.min, distance);
+      range.max = std::max(range.max, distance);
+    }
+    return range;
+  };
+  const DepthRange across = range_along(glm::dvec2(0.0));
+  const double determinant = xx * yy - xy * xy;
+  if (!(determinant > 1e-12 * xx * yy)) {
+    return across;
+  }
+  const DepthRange along = range_along(glm::dvec2(z.x * yy - z.y * xy, z.y * xx - z.x * xy) / determinant);
+  return along.max - along.min < across.max - across.min ? along : across;
+}
 
 VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corners)
 {
@@ -238,6 +297,9 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
 
 namespace {
 
+/** Fitted maps are not made smaller than this, texels. */
+constexpr double size_min_px = 128.0;
+
 /** Index of a choice of slices for a sun's maps, and the edge of the maps, texels. */
 struct SlicePlan {
   std::size_t index;
@@ -245,11 +307,11 @@ struct SlicePlan {
 };
 
 /**
- * The smallest number of slices that suffices. \a size_px: edge of the maps that `choices` were made for, texels.
- * \a size_max_px: the largest edge, for the largest number of slices.
+ * The texels that a picture needs: those of the smallest number of slices that suffices. \a size_px: edge of the maps
+ * that `choices` were made for, texels. \a enlarged_px: the largest edge, for the largest number of slices.
  */
-SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int size_max_px,
-                      const CascadeSettings &settings)
+SlicePlan sufficient_slices(const std::vector<SunSlices> &choices, int size_px, int enlarged_px,
+                            const CascadeSettings &settings)
 {
   const auto sufficient = std::ranges::find_if(
       choices, [](const SunSlices &slices) { return slices.error <= texel_in_pixels_max * texel_in_pixels_max; });
@@ -265,16 +327,60 @@ SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int si
   const double factor = texel_in_pixels / texel;
   const double size = size_px / std::pow(resize_step, std::floor(std::log(factor) / std::log(resize_step)));
   const bool can_enlarge = index + 1 == choices.size() && texel > settings.texel_in_pixels_enlarged;
-  return {index, int(std::clamp(std::ceil(size), std::min(128.0, double(size_px)),
-                                double(can_enlarge ? size_max_px : size_px)))};
+  return {index, int(std::clamp(std::ceil(size), std::min(size_min_px, double(size_px)),
+                                double(can_enlarge ? enlarged_px : size_px)))};
+}
+
+/**
+ * The number of slices with the fewest texels that have the error of sufficient_slices, with texels that are smaller by
+ * short_depth_gain. \a enlarged_px: the largest edge for sufficient_slices. \a size_max_px, \a edge_max_px: \see
+ * fit_sun.
+ */
+SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int enlarged_px, int size_max_px,
+                      int edge_max_px, const CascadeSettings &settings)
+{
+  SlicePlan plan = sufficient_slices(choices, size_px, enlarged_px, settings);
+  const double error = choices[plan.index].error * std::pow(double(size_px) / (short_depth_gain * plan.size_px), 2.0);
+  if (!settings.can_resize || settings.count > 0 || error == 0.0) {
+    return plan;
+  }
+  plan.size_px = std::min(int(std::ceil(short_depth_gain * plan.size_px)), size_max_px);
+  const auto map_count = [&](std::size_t i) { return double(choices[i].slices.size() + 1); };
+  const auto texels = [&](const SlicePlan &one) { return map_count(one.index) * one.size_px * one.size_px; };
+  for (std::size_t i = 0; i < choices.size(); i++) {
+    const double size = std::max(std::ceil(size_px * std::sqrt(choices[i].error / error)), size_min_px);
+    const double most = std::min(size_max_px * std::sqrt(cascade_count_max / map_count(i)), double(edge_max_px));
+    if (size <= most && texels({i, int(size)}) < texels(plan)) {
+      plan = {i, int(size)};
+    }
+  }
+  return plan;
+}
+
+/** The corners of the clusters that are partly inside of \a fit, in its axes. */
+void find_receivers(const SunFit &fit, const glm::dmat3 &lamp_from_world, std::span<const VisibleCluster> clusters,
+                    std::vector<glm::dvec3> &receivers)
+{
+  receivers.clear();
+  for (const VisibleCluster &cluster : clusters) {
+    LampBox box;
+    for (const glm::dvec3 &corner : cluster.corners_ws) {
+      receivers.push_back(lamp_from_world * corner);
+      box.extend(receivers.back());
+    }
+    if (box.max.x < fit.min.x || box.min.x > fit.max.x || box.max.y < fit.min.y || box.min.y > fit.max.y) {
+      receivers.resize(receivers.size() - cluster.corners_ws.size());
+    }
+  }
 }
 
 /** Fill \a fits with cascades around \a clusters, and one around \a needed behind them. */
 void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, const draw::View &view,
-                     std::span<const VisibleCluster> clusters, int size_max_px, const CascadeSettings &settings,
-                     float pixel_size, std::vector<SunFit> &fits)
+                     const VisibleRange &visible, std::span<const VisibleCluster> clusters, int size_max_px,
+                     int edge_max_px, const CascadeSettings &settings, float pixel_size, std::vector<SunFit> &fits)
 {
-  const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / resize_step)), 1) : size_max_px;
+  const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / size_growth_max)), 1) : size_max_px;
+  const int enlarged_px = settings.can_resize ? int(std::lround(resize_step * size_px)) : size_px;
   // All maps have one size.
   const auto slices_at = [&](int px) {
     const SunFit whole = fit_to(needed, lamp_from_world, px, false);
@@ -289,20 +395,30 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
                       (settings.count > 0 ? settings.count : cascade_count_max) - 1);
   };
   std::vector<SunSlices> choices = slices_at(size_px);
-  const SlicePlan plan = plan_slices(choices, size_px, size_max_px, settings);
+  const SlicePlan plan = plan_slices(choices, size_px, enlarged_px, size_max_px, edge_max_px, settings);
   if (plan.size_px != size_px) {
     // The margin of the coarsest map is wider if its texels are larger.
     choices = slices_at(plan.size_px);
   }
-  const SunFit last = fit_to(needed, lamp_from_world, plan.size_px, false);
+  std::vector<glm::dvec3> receivers;
   for (const SunSlice &slice : choices[plan.index].slices) {
     const LampBox box{{slice.min, needed.min.z}, {slice.max, needed.max.z}};
-    SunFit fit = fit_to(box, turned(lamp_from_world, slice.turn), plan.size_px, false);
+    const glm::dmat3 slice_from_world = turned(lamp_from_world, slice.turn);
+    SunFit fit = fit_to(box, slice_from_world, plan.size_px, false);
     fit.turn = slice.turn;
+    find_receivers(fit, slice_from_world, clusters, receivers);
+    if (!receivers.empty()) {
+      fit_depths(fit, slice_from_world, receivers);
+    }
     fits.push_back(std::move(fit));
   }
   std::ranges::sort(fits, {}, [&](const SunFit &fit) { return fit.texel(); });
-  fits.push_back(last);
+  fits.push_back(fit_to(needed, lamp_from_world, plan.size_px, false));
+  receivers.clear();
+  for (const glm::dvec3 &corner : visible.corners) {
+    receivers.push_back(lamp_from_world * corner);
+  }
+  fit_depths(fits.back(), lamp_from_world, receivers);
 }
 
 }  // namespace
@@ -310,7 +426,7 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
 std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
                             float pixel_size, std::vector<SunFit> memory, double tangent,
-                            std::span<const VisibleCluster> clusters)
+                            std::span<const VisibleCluster> clusters, int edge_max_px)
 {
   std::vector<SunFit> fits = std::move(memory);
   fits.clear();
@@ -321,7 +437,8 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
   const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
   // One map must cover all receivers.
   if (settings.count != 1 && !clusters.empty()) {
-    fit_to_clusters(*needed, lamp_from_world, view, clusters, size_px, settings, pixel_size, fits);
+    fit_to_clusters(*needed, lamp_from_world, view, visible, clusters, size_px, std::max(edge_max_px, size_px),
+                    settings, pixel_size, fits);
     return fits;
   }
   const SunFit whole = fit_to(*needed, lamp_from_world, size_px, true);
@@ -367,7 +484,8 @@ bool still_fits(const SunFit &old, const SunFit &needed)
 {
   if (!needed.is_stable) {
     // A picture must not depend on the pictures before it.
-    return old.turn == needed.turn && old.size_px == needed.size_px && old.min == needed.min && old.max == needed.max;
+    return old.turn == needed.turn && old.size_px == needed.size_px && old.min == needed.min && old.max == needed.max &&
+           old.slope == needed.slope;
   }
   // Extents change in steps. A difference of two steps does not justify drawing the map again.
   const double size_ratio_max = std::pow(extent_step, 2.5);

@@ -35,6 +35,19 @@ static bool is_whole_cube(const ShadowSlot &slot)
   return slot.views.size() == 6 && slot.crop == whole_map;
 }
 
+/**
+ * The planes outside of which no caster darkens a texel of \a view. Those between a sun and its near plane are clamped
+ * to that plane.
+ */
+static draw::CullingPlanes caster_planes(const ShadowSlot &slot, const draw::View &view)
+{
+  draw::CullingPlanes planes = view.culling_planes();
+  if (slot.lamp.kind == scene::LampKind::Sun) {
+    planes[draw::View::near_plane] = {0.0F, 0.0F, 0.0F, 1.0F};
+  }
+  return planes;
+}
+
 LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws, const draw::CullingVolume &volume)
 {
   const glm::vec3 position_ws = slot.lamp.position_ws();
@@ -48,7 +61,7 @@ LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
   }
   LayerMask layers = 0;
   for (std::size_t i = 0; i < slot.views.size(); i++) {
-    layers |= slot.views[i].touches(volume) ? 1U << i : 0U;
+    layers |= draw::touches(caster_planes(slot, slot.views[i]), volume) ? 1U << i : 0U;
   }
   return layers;
 }
@@ -128,7 +141,7 @@ static void keep_casters_of_rows(const ShadowSlot &slot, int layer, const LayerR
                                  const ShadowRecording &recording)
 {
   const draw::View view = view_of_rows(slot.views[std::size_t(layer)], rows, slot.size_px);
-  draw::test_volumes(view.culling_planes(), recording.casters.volumes(), recording.is_touching);
+  draw::test_volumes(caster_planes(slot, view), recording.casters.volumes(), recording.is_touching);
   for (std::size_t i = 0; i < recording.is_touching.size(); i++) {
     recording.caster_layers[i] = recording.is_touching[i] != 0 ? recording.caster_layers[i] : std::uint8_t(0);
   }
@@ -151,7 +164,7 @@ static LayerMask find_caster_layers(const ShadowSlot &slot, LayerMask missing, c
   else {
     for (LayerMask rest = missing; rest != 0; rest &= rest - 1) {
       const int layer = std::countr_zero(rest);
-      draw::test_volumes(slot.views[std::size_t(layer)].culling_planes(), recording.casters.volumes(), is_touching);
+      draw::test_volumes(caster_planes(slot, slot.views[std::size_t(layer)]), recording.casters.volumes(), is_touching);
       for (std::size_t i = 0; i < list.size(); i++) {
         touched[i] = std::uint8_t(touched[i] | is_touching[i] << layer);
       }
@@ -211,10 +224,10 @@ static void record_instances(const ShadowSlot &slot, LayerMask layers, const Sha
       recording.counters.caster_draws++;
     }
   }
-  // Casters in front of the near plane are clamped to it, unless the lamp has a clip_start. The pass state has depth
-  // clamping; the argument is the state to remove.
-  recording.pass.record(slot.views.front(), recording.list,
-                        slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
+  // Casters in front of the near plane are clamped to it, unless the lamp has a clip_start, which suns have not. The
+  // pass state has depth clamping; the argument is the state to remove.
+  const bool is_clipped = slot.lamp.shadow.clip_start && slot.lamp.kind != scene::LampKind::Sun;
+  recording.pass.record(slot.views.front(), recording.list, is_clipped ? gpu::State::DepthClamp : gpu::State::None);
 }
 
 LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_drawn, const ShadowRecording &recording)

@@ -69,8 +69,8 @@ struct ShadowSlot {
   std::vector<SunFit> new_fits{};
   /** Offset of the slot's ShadowRenderBlock in the buffer. */
   std::uint32_t render_offset_bytes = 0;
-  /** Maps of suns and spots: bound of the error of their depths. */
-  float depth_rounding = shared::DEPTH_ROUNDING;
+  /** Maps of suns and spots: half a step of their depths. 0 for depths of 32 bits. */
+  float depth_half_step = 0.0F;
   /** Layers that were drawn and are still valid. */
   LayerMask drawn = 0;
   /** Layers that need not be drawn: those of `drawn`, and layers without a caster. */

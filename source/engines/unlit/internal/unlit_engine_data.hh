@@ -122,7 +122,7 @@ struct Data final : draw::EngineViewportData {
   draw::TargetPass target_pass;
   /** Values of the depth camera. The passes of surfaces read them by reference. \see unlit_depth_camera_lib.glsl */
   glm::mat4 depth_clip_from_world{1.0F};
-  glm::vec2 depth_tolerance{0.0F};
+  glm::vec3 depth_tolerance{0.0F};
   PassesKey recorded;
   std::optional<PictureKey> synced_picture;
 };
