@@ -83,6 +83,11 @@ float offset_visibility(sampler2DArray depths, int layer, int size_px, ReceiverP
 
 /** Error of a caster that is continued to the receiver, in texels. */
 const float CONTACT_ERROR_TEXELS = 0.1;
+/**
+ * Part of that error within which light rises from 0 to 1 beyond the end of a caster. Of 1, 0.5 and 0.25, the last one has the least error:
+ * RMSE of the scene plaza with one sample 0.011349, 0.011322 and 0.011306.
+ */
+const float CONTACT_RISE = 0.25;
 
 /**
  * Change of a caster's height above the receiver's plane by a texel, towards those that do not shadow the receiver: the smaller one of
@@ -155,7 +160,8 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
     blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
   }
-  blend = is_edge && at_receiver + error < 0.0 ? 1.0 : blend;
+  // Beyond the end, light rises within a part of the error. The blend would be dashes along the foot of a lit wall.
+  blend = is_edge && at_receiver <= 0.0 ? min(-at_receiver / max(CONTACT_RISE * error, 1e-30), 1.0) : blend;
   return is_hidden ? 0.0 : blend;
 }
 

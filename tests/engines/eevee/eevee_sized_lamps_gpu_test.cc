@@ -600,11 +600,14 @@ TEST_F(LitPenumbraTest, TheGroundAtTheFootOfALitWallHasNoDarkDashes)
   scene::Lamp lamp;
   lamp.kind = scene::LampKind::Point;
   lamp.radius = 0.1F;
-  test::add_lamp(scene, lamp, glm::translate(turned, {2.0, 0.0, 2.0}));
   // Columns along the foot of the wall, rows from it to 0.04 m in front of it.
   scene::PlacedCamera camera = camera_above(0.8, 0.32, 1.0 / 16.0);
   camera.world_from_camera = glm::rotate(glm::translate(turned, {0.02, 0.0, 0.8}), 0.5 * pi, glm::dvec3(0, 0, 1));
-  EXPECT_GT(least_visibility(camera, {256, 16}), 0.9F);
+  for (const double height : {2.0, 0.7}) {
+    test::remove_lamps(scene);
+    test::add_lamp(scene, lamp, glm::translate(turned, {2.0, 0.0, height}));
+    EXPECT_GT(least_visibility(camera, {256, 16}), 0.9F) << height;
+  }
 }
 
 using SlowPenumbraTest = PenumbraTest;
