@@ -30,7 +30,7 @@ inline constexpr double resize_step = 1.189207115;
  * Fitted maps with a size of their own have texels that are smaller by this factor than the picture needs. Without it,
  * the steps of 16-bit depths, and the larger offset of receivers, would add to the error of pictures.
  */
-inline constexpr double short_depth_gain = 1.04;
+inline constexpr double short_depth_gain = 1.08;
 /** The largest size of a map, over the size asked for, if a sun has the most maps. */
 inline constexpr double size_growth_max = resize_step * short_depth_gain;
 
