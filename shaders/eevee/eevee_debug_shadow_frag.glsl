@@ -22,6 +22,8 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   /** ESM_… for filtered distances up to `far`; -1 for depths. */
   int esm_format;
   int first_layer;
+  /** Bit i: layer i of the shadow is in shadow_layers, where these layers follow each other. */
+  int placed;
   /** Bit i: layer i of the shadow was drawn. */
   int drawn;
   /** Edge of a layer without its border, texels. */
@@ -69,7 +71,7 @@ void main()
   if (is_cube != 0) {
     texel.y = size_px - 1 - texel.y;
   }
-  float stored = texelFetch(shadow_layers, ivec3(texel + border, first_layer + layer), 0).r;
+  float stored = texelFetch(shadow_layers, ivec3(texel + border, first_layer + bitCount(placed & ((1 << layer) - 1))), 0).r;
   int range = is_cube != 0 ? 0 : min(layer, 3);
   float distance = esm_format >= 0 ? esm_decoded(stored, far[range], esm_format) :
                                      distance_of_depth(stored, near[range], far[range], projection);

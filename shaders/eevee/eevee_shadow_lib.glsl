@@ -303,7 +303,7 @@ ShadowPlace cube_place(CubeReceiver receiver, Surface surface, vec3 offset)
   place.plane.slope = n.xy * (receiver.per_metre / receiver.texel_scale);
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
   place.plane.surface_depth = surface_depth(cube.texel_size * place.receiver_depth, place.plane.slope, receiver.offset_texels);
-  place.layer = cube.layer + face;
+  place.layer = cube_face_layer(cube.layers, face);
   // Beyond the part of the face that its layer holds, there is no surface of the picture.
   float half_px = 0.5 * float(cube.size_px);
   bool is_in_crop = all(lessThanEqual(abs(place.plane.texel + (0.5 - half_px)), vec2(half_px)));

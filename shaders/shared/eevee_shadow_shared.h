@@ -13,7 +13,7 @@ SHARED_BEGIN
 #define SHADOW_FILTER_HARD 0
 #define SHADOW_FILTER_PCF 1
 
-/** Six faces around a lamp, in layers `layer` to `layer` + 5 of `shadow_cubes`, in the lower left `size_px`² of each. */
+/** Faces around a lamp, in layers of `shadow_cubes`, in the lower left `size_px`² of each. */
 struct ShadowCubeData {
   /** Distance of the near plane, metres. The far plane is at infinity: depth = near / distance along the face's axis. */
   float near;
@@ -23,8 +23,8 @@ struct ShadowCubeData {
   float texel_size;
   /** Factor of the derived normal offset. 0: no offset. */
   float bias;
-  /** The first of six. */
-  int layer;
+  /** \see cube_layers */
+  int layers;
   /** Bit i: face i was drawn. The other faces contain no caster. The bits from 6 on are SHADOW_FILTER_… */
   int faces_and_filter;
   /** The part of each face that its layer holds: left, bottom, right and top edge, as unpackUnorm4x8 gives them. */
@@ -35,6 +35,18 @@ SHARED_ASSERT_SIZE(ShadowCubeData, 32)
 
 /** \see ShadowCubeData::faces_and_filter */
 #define SHADOW_CUBE_FACE_BITS 6
+
+/** Layers of the faces: \a first, plus \a steps, three bits for each face. Faces that were not drawn need no layer. */
+SHARED_FUNCTION int cube_layers(int first, int steps)
+{
+  return first << 18 | steps;
+}
+
+/** \a layers: \see cube_layers */
+SHARED_FUNCTION int cube_face_layer(int layers, int face)
+{
+  return (layers >> 18) + (layers >> 3 * face & 7);
+}
 
 /** One map of a spot or a sun, in a layer of `shadow_maps`. The map's axis is LightData::forward_ws of the lamp. */
 struct ShadowMapData {

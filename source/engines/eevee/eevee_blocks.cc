@@ -151,7 +151,7 @@ constexpr auto shadow_fields = std::to_array<Field>({
     FIELD("shadow.", ShadowBlock, cubes[0].far),
     FIELD("shadow.", ShadowBlock, cubes[0].texel_size),
     FIELD("shadow.", ShadowBlock, cubes[0].bias),
-    FIELD("shadow.", ShadowBlock, cubes[0].layer),
+    FIELD("shadow.", ShadowBlock, cubes[0].layers),
     FIELD("shadow.", ShadowBlock, cubes[0].faces_and_filter),
     FIELD("shadow.", ShadowBlock, cubes[0].crop),
     FIELD("shadow.", ShadowBlock, cubes[0].size_px),

@@ -58,6 +58,7 @@ const gpu::Texture &ShadowPicture::draw(gpu::Device &device, ShaderCache &shader
   group.constant("projection", layers.projection);
   group.constant("esm_format", layers.esm_format);
   group.constant("first_layer", layers.first_layer);
+  group.constant("placed", int(layers.placed));
   group.constant("drawn", int(layers.drawn));
   group.constant("size_px", layers.size_px);
   group.constant("border", layers.border);

@@ -346,7 +346,7 @@ std::vector<FramePart> frame_parts(const ReportSource &source)
        : settings.planned_sample_count() == 1 ? "a picture of one sample has none"
                                               : "no material emits light");
   part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
-       has(f, Feature::ShadowCube) ? nothing_seen : no_shadow);
+       has(f, Feature::ShadowCube) ? why_not("no visible surface looks a cube up") : no_shadow);
   part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),
        has(f, Feature::ShadowMap) ? why_not("no caster can shadow a visible surface") : no_shadow);
   part("shadow_esm", shadows.esm_count() > 0, fmt::format("{} point lamps or spots", shadows.esm_count()),

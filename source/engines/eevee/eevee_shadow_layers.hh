@@ -23,6 +23,8 @@ struct ShadowLayers {
   const gpu::Texture *texture = nullptr;
   /** Index of the first layer in `texture`. */
   int first_layer = 0;
+  /** The layers that are in `texture`, where they follow each other. */
+  LayerMask placed = ~0U;
   /** Edge of the shadow in each layer without its border, texels. It is in the lower left corner of the layer. */
   int size_px = 0;
   /** Width of the border around the shadow, texels. */

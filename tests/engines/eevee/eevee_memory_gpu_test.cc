@@ -6,6 +6,7 @@
 #include "eevee_test_scene.hh"
 #include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
+#include "shadows/shadows.hh"
 
 #include <unistd.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -118,6 +119,16 @@ TEST_F(MemoryGpuTest, MapsOfPicturesOf64SamplesHaveFewTexelsOf16Bits)
   const gpu::Texture &maps = renderer.inspect().shadows().scene().maps();
   EXPECT_EQ(maps.desc().format, gpu::Format::Depth16);
   EXPECT_LE(double(maps.desc().size_bytes()) / 0x1p20, 72.0);
+}
+
+/** The lamp is above all objects, so that no surface looks up the face at +Y. */
+TEST_F(MemoryGpuTest, CubesOfPicturesOf64SamplesHaveNoLayerForAFaceThatNothingLooksUp)
+{
+  const scene::Scene scene = gltf::import_gltf(GNOMON_SOURCE "/examples/scenes/plaza.glb");
+  SceneRenderer renderer(*device, scene, {640, 360}, offline_settings(64));
+  renderer.sync();
+  renderer.draw_sample(scene.placed_cameras().front());
+  EXPECT_LE(renderer.inspect().shadows().scene().cubes().desc().layers, 5);
 }
 
 TEST_F(SlowMemoryGpuTest, StaysFlatOver200ScenesThatAreLoaded)

@@ -3,6 +3,7 @@
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "gpu_read.hh"
+#include "shadows/shadows.hh"
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -106,6 +107,30 @@ TEST_P(ShadowCropGpuTest, PicturesOfTwoViewportsAreThoseOfEach)
     alone.sync();
     alone.draw(cameras[i]);
     EXPECT_EQ(gpu::read_as<glm::vec4>(*device, engine.radiance(viewports[i])), alone.read_picture()) << i;
+  }
+}
+
+/** A cube has layers only for the faces that the picture looks up, unless pictures before it looked up others. */
+TEST_P(ShadowCropGpuTest, PicturesDoNotDependOnTheLayersOfPicturesBeforeThem)
+{
+  // Few samples, as the points of lamps with a size may look up further faces.
+  Settings with = settings(64, true);
+  with.sample_count = 2;
+  SceneRenderer renderer(*device, scene, crop_picture_px, with);
+  const auto draw = [&](const scene::PlacedCamera &from) {
+    renderer.sync();
+    renderer.draw(from);
+    return renderer.read_picture();
+  };
+  const std::vector<glm::vec4> alone = draw(camera);
+  const gpu::Texture &cubes = renderer.inspect().shadows().scene().cubes();
+  const int alone_count = cubes ? cubes.desc().layers : 0;
+  // From the ground, past the lamp.
+  draw(test::camera_at({-9, -9, 0.2F}, {9, 9, 2}, 1.5F));
+  EXPECT_EQ(draw(camera), alone);
+  if (cubes) {
+    EXPECT_LT(alone_count, 6);
+    EXPECT_EQ(cubes.desc().layers, 6) << "the case that is to be tested";
   }
 }
 

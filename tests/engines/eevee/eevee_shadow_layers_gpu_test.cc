@@ -81,7 +81,8 @@ std::vector<std::vector<float>> drawn_layers(gpu::Device &device, const Shadows 
     const shared::ShadowCubeData &data = shadows.block_data().cubes[cube];
     for (int face = 0; face < 6; face++) {
       if ((data.faces_and_filter >> face & 1) != 0) {
-        layers.push_back(gpu::read_as<float>(device, shadows.scene().cubes(), data.layer + face));
+        layers.push_back(
+            gpu::read_as<float>(device, shadows.scene().cubes(), shared::cube_face_layer(data.layers, face)));
       }
     }
   }

@@ -158,8 +158,74 @@ TEST_F(ShadowsTest, TheSecondCubeBeginsAtLayerSix)
         fmt::format("begin shadow of {}, face {} -> shadow_cubes {} ", layer < 6 ? "a" : "b", layer % 6, layer);
     EXPECT_NE(text.find(expected), std::string::npos) << expected << "\n" << text;
   }
-  EXPECT_EQ(shadows.block_data().cubes[0].layer, 0);
-  EXPECT_EQ(shadows.block_data().cubes[1].layer, 6);
+  for (int face = 0; face < 6; face++) {
+    EXPECT_EQ(shared::cube_face_layer(shadows.block_data().cubes[0].layers, face), face);
+    EXPECT_EQ(shared::cube_face_layer(shadows.block_data().cubes[1].layers, face), 6 + face);
+  }
+}
+
+TEST_F(ShadowsTest, CubesOfFittedPicturesHaveLayersForTheFacesThatAreLookedUp)
+{
+  settings = {.is_fitted_to_depth = true, .layer_pass = LayerPass::Single};
+  casters = {box_at({0, 0, 0}, 3.0F)};
+  add_lamp(scene::LampKind::Point, "a");
+  add_lamp(scene::LampKind::Point, "b");
+  const auto layer_of = [&](std::size_t cube, int face) {
+    const shared::ShadowCubeData &data = shadows.block_data().cubes[cube];
+    EXPECT_EQ(data.faces_and_filter, 1 << face);
+    return shared::cube_face_layer(data.layers, face);
+  };
+  const auto expect_drawn = [](const std::string &text, const std::string &face, int layer) {
+    const std::string expected = fmt::format("begin shadow of {} -> shadow_cubes {} ", face, layer);
+    EXPECT_NE(text.find(expected), std::string::npos) << expected << "\n" << text;
+  };
+  // A narrow view from inside along -Z shows nothing behind or beside it.
+  view = draw::View(glm::mat4(1.0F), draw::perspective(0.1F, 0.1F, 0.5F, 100.0F));
+  sync(settings);
+  EXPECT_FALSE(scene_shadows.cubes());
+  std::string text = update();
+  EXPECT_EQ(scene_shadows.cubes().desc().layers, 2);
+  expect_drawn(text, "a, face 5", 0);
+  expect_drawn(text, "b, face 5", 1);
+  EXPECT_EQ(layer_of(0, 5), 0);
+  EXPECT_EQ(layer_of(1, 5), 1);
+  // Another view needs another face. From then on, all faces have a layer.
+  view = draw::View(glm::rotate(glm::mat4(1.0F), 3.14159265F, {0, 1, 0}), view.clip_from_view());
+  text = update();
+  EXPECT_EQ(scene_shadows.cubes().desc().layers, 12);
+  expect_drawn(text, "a, face 4", 4);
+  expect_drawn(text, "b, face 4", 10);
+  EXPECT_EQ(layer_of(0, 4), 4);
+  EXPECT_EQ(layer_of(1, 4), 10);
+  EXPECT_EQ(updated(), 0U) << "a sync without a change";
+  add_lamp(scene::LampKind::Point, "c");
+  EXPECT_EQ(updated(), 1U) << "one more lamp moves no texels of the others";
+  EXPECT_EQ(scene_shadows.cubes().desc().layers, 18);
+  // The array does not keep more layers than the remaining lamps may have.
+  remove_lamp(0);
+  remove_lamp(0);
+  sync(settings);
+  update();
+  EXPECT_EQ(scene_shadows.cubes().desc().layers, 1);
+  EXPECT_EQ(layer_of(0, 4), 0);
+}
+
+TEST_F(ShadowsTest, LayersOfAFittedCubeAreDrawnInOnePass)
+{
+  settings = {.is_fitted_to_depth = true, .layer_pass = LayerPass::Geometry};
+  casters = {box_at({0, 0, 0}, 3.0F)};
+  add_lamp(scene::LampKind::Point, "point");
+  // From inside, half to the right: the faces at +X and -Z.
+  view = draw::View(glm::rotate(glm::mat4(1.0F), 0.25F * 3.14159265F, {0, 1, 0}),
+                    draw::perspective(0.1F, 0.1F, 0.5F, 100.0F));
+  sync(settings);
+  const std::string text = update();
+  EXPECT_EQ(scene_shadows.cubes().desc().layers, 2) << text;
+  EXPECT_NE(text.find("begin shadow of point, all layers -> shadow_cubes 0-1 "), std::string::npos) << text;
+  EXPECT_EQ(text.find("begin shadow of point, face"), std::string::npos) << "one clear for both" << text;
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 0 | 1 << 5);
+  EXPECT_EQ(shared::cube_face_layer(shadows.block_data().cubes[0].layers, 0), 0);
+  EXPECT_EQ(shared::cube_face_layer(shadows.block_data().cubes[0].layers, 5), 1);
 }
 
 // hazards.md: a distance cube cleared to 0 is an occluder at the lamp.

@@ -59,7 +59,12 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   if (given.array == ShadowArrayId::Maps) {
     slot.place.first_layer = old.place.first_layer;
   }
-  else if (old.place.first_layer != slot.place.first_layer) {
+  else if (slot.placed == 0) {
+    slot.place.first_layer = old.place.first_layer;
+    slot.placed = old.placed;
+  }
+  else if (old.place.first_layer != slot.place.first_layer ||
+           (~old.placed & ((1U << given.layer_count_max) - 1U)) != 0) {
     return;
   }
   slot.near = old.near;
@@ -114,6 +119,8 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
   state_->casters.begin();
   const bool is_kept = settings.caster_faces == settings_.caster_faces;
   settings_ = settings;
+  // Other views move, and would need more layers again and again. The layers of their cubes are those of the plan.
+  const bool is_placed_by_view = settings.is_fitted_to_depth;
   /** \a viewport: LayerOwner::viewport. */
   const auto replace = [&](std::vector<ShadowSlot> &slots, std::uint64_t viewport) {
     std::vector<ShadowSlot> before = std::exchange(slots, {});
@@ -124,7 +131,8 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
                          .center_ws = lamp.position_ws(),
                          .place = place,
                          .size_px = place.given.size_px,
-                         .viewport = viewport});
+                         .viewport = viewport,
+                         .placed = is_placed_by_view && place.given.array == ShadowArrayId::Cubes ? 0U : ~0U});
         if (is_kept) {
           take_over(slots.back(), before);
         }
@@ -186,7 +194,7 @@ void SceneShadows::allocate(gpu::Device &device, ShaderCache &shaders)
   if (cube_count() + map_count() > 0 && !sampler_) {
     sampler_ = device.create_sampler({.name = "shadow_sampler"});
   }
-  resize(device, ShadowArrayId::Cubes, state_->plan.cubes.end());
+  resize(device, ShadowArrayId::Cubes, cube_layers());
   resize(device, ShadowArrayId::DistanceCube, lamp_count(ShadowArrayId::DistanceCube) > 0 ? 6 : 0);
   if (map_count() == 0) {
     resize(device, ShadowArrayId::Maps, 0);
@@ -259,6 +267,65 @@ void SceneShadows::choose_map_format()
       slot.invalidate(is_changed ? ~0U : 0U);
     }
   });
+}
+
+template <typename Action>
+void SceneShadows::for_each_cube(Action &&action)
+{
+  for (ShadowSlot &slot : state_->slots) {
+    if (slot.place.given.array == ShadowArrayId::Cubes) {
+      action(slot);
+    }
+  }
+}
+
+int SceneShadows::cube_layers()
+{
+  if (!settings_.is_fitted_to_depth) {
+    return state_->plan.cubes.end();
+  }
+  int end = 0;
+  int planned = 0;
+  for_each_cube([&](const ShadowSlot &slot) {
+    end = slot.placed != 0 ? std::max(end, slot.place.first_layer + slot.index_of(slot.place.given.layer_count_max))
+                           : end;
+    planned += slot.place.given.layer_count_max;
+  });
+  if (end <= planned) {
+    return end;
+  }
+  // With the gaps of removed lamps, the array exceeds the plan.
+  for_each_cube([](ShadowSlot &slot) {
+    slot.placed = 0;
+    slot.invalidate(~0U);
+  });
+  return 0;
+}
+
+void SceneShadows::place_cubes(gpu::Device &device, const VisibleRange &visible)
+{
+  LayerMask placed = 0;
+  LayerMask missing = 0;
+  for_each_cube([&](const ShadowSlot &slot) {
+    placed |= slot.placed;
+    missing |= needed_layers(slot, visible) & ~slot.placed;
+  });
+  if (missing == 0) {
+    return;
+  }
+  // Lamps whose points move, and views that move, may need another face each time. If the first faces do not suffice,
+  // all lamps get all, so that the array is created twice at most.
+  int end = 0;
+  for_each_cube([&](ShadowSlot &slot) {
+    const LayerMask now = placed == 0 ? needed_layers(slot, visible) : ~0U;
+    if (slot.placed != now || slot.place.first_layer != end) {
+      slot.placed = now;
+      slot.place.first_layer = end;
+      slot.invalidate(~0U);
+    }
+    end += slot.placed_count();
+  });
+  resize(device, ShadowArrayId::Cubes, end);
 }
 
 /** Assign layers to each map. A run keeps its layers unless it has to grow and the next layers are in use. */

@@ -23,6 +23,7 @@ class ShaderCache;
 enum class ShadowArrayId : std::uint8_t;
 struct ShadowLamp;
 class Shadows;
+struct VisibleRange;
 
 /**
  * Shadow maps of a scene's lamps on a device, for all viewports: the plan, the casters, the textures, and the layers
@@ -109,8 +110,15 @@ class SceneShadows {
   /** Calls \a action with the shared slots and with the slots of all viewports. */
   template <typename Action>
   void for_each_slot(Action &&action);
+  /** Calls \a action with the slots whose layers are in the array of cubes. */
+  template <typename Action>
+  void for_each_cube(Action &&action);
   void resize(gpu::Device &device, ShadowArrayId id, int layers);
   void place_render_blocks(gpu::Device &device);
+  /** Number of layers that the array of cubes needs before the next view. */
+  int cube_layers();
+  /** Assign layers to the faces of each cube that the surfaces of a view look up. */
+  void place_cubes(gpu::Device &device, const VisibleRange &visible);
   void place_maps(gpu::Device &device);
   void choose_map_format();
 

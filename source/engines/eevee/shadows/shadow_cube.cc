@@ -141,7 +141,11 @@ class CubeTechnique final : public ShadowTechnique {
     const glm::vec2 extent = extent_of(slot.crop);
     data.texel_size = 2.0F * std::max(extent.x, extent.y) / (float(size_px) * shared::cube_uv_scale(float(size_px)));
     data.bias = slot.lamp.shadow.bias.value_or(1.0F);
-    data.layer = slot.place.first_layer;
+    int steps = 0;
+    for (int face = 0; face < 6; face++) {
+      steps |= (slot.placed >> face & 1U) != 0 ? slot.index_of(face) << 3 * face : 0;
+    }
+    data.layers = shared::cube_layers(slot.place.first_layer, steps);
     const int filter = slot.place.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
     data.faces_and_filter = int(slot.drawn | slot.recorded_drawn) | filter << SHADOW_CUBE_FACE_BITS;
     data.crop = glm::packUnorm4x8(glm::vec4(slot.crop) / 255.0F);

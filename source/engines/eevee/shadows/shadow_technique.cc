@@ -129,6 +129,11 @@ void crop_views(ShadowSlot &slot, const VisibleRange &visible)
   }
 }
 
+LayerMask needed_layers(const ShadowSlot &slot, const VisibleRange &visible)
+{
+  return slot.place.technique->layers_needed(slot, visible) & slot.looked_up & slot.all_layers();
+}
+
 /** \a view restricted to \a rows of a layer with an edge of \a size_px texels, and a texel on each side. */
 static draw::View view_of_rows(const draw::View &view, const LayerRows &rows, int size_px)
 {
@@ -206,7 +211,9 @@ static void write_render_block(const ShadowSlot &slot, const ShadowRecording &re
 {
   shared::ShadowRenderBlock block{};
   for (std::size_t i = 0; i < slot.views.size(); i++) {
-    block.clip_from_world[i] = slot.views[i].clip_from_world();
+    if ((slot.placed >> i & 1U) != 0) {
+      block.clip_from_world[slot.index_of(int(i))] = slot.views[i].clip_from_world();
+    }
   }
   block.size_px = float(slot.size_px);
   recording.list.update(recording.render_buffer, slot.render_offset_bytes, std::as_bytes(std::span(&block, 1)));
@@ -220,7 +227,7 @@ static void record_instances(const ShadowSlot &slot, LayerMask layers, const Sha
   std::ranges::for_each(recording.casters.calls(), &draw::InstanceCall::clear);
   for (std::size_t i = 0; i < casters.size(); i++) {
     for (LayerMask rest = recording.caster_layers[i] & layers; rest != 0; rest &= rest - 1) {
-      casters[i].instances->add(casters[i].object, std::uint32_t(std::countr_zero(rest)));
+      casters[i].instances->add(casters[i].object, std::uint32_t(slot.index_of(std::countr_zero(rest))));
       recording.counters.caster_draws++;
     }
   }
@@ -259,11 +266,11 @@ LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_d
   keep.depth_load = gpu::LoadAction::Load;
   const bool is_one_pass = recording.layer_pass != LayerPass::Single && with_casters != 0;
   // One clear of all layers is cheaper than one clear for each layer, but must not clear valid layers.
-  const bool is_cleared_at_once = is_one_pass && drawn == slot.all_layers();
+  const bool is_cleared_at_once = is_one_pass && drawn == (slot.placed & slot.all_layers());
   for (LayerMask rest = is_cleared_at_once ? 0 : drawn; rest != 0; rest &= rest - 1) {
     const int layer = std::countr_zero(rest);
-    list.begin_pass(name_of(layer_name, layer),
-                    recording.array.framebuffer(recording.device, slot.place.first_layer + layer), clear);
+    list.begin_pass(name_of(layer_name, layer), recording.array.framebuffer(recording.device, slot.array_layer(layer)),
+                    clear);
     if (recording.layer_pass == LayerPass::Single) {
       record_instances(slot, 1U << layer, recording);
     }
@@ -271,7 +278,7 @@ LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_d
   }
   if (is_one_pass) {
     list.begin_pass(name_of("all layers"),
-                    recording.array.framebuffer(recording.device, slot.place.first_layer, int(slot.views.size())),
+                    recording.array.framebuffer(recording.device, slot.place.first_layer, slot.placed_count()),
                     is_cleared_at_once ? clear : keep);
     record_instances(slot, missing, recording);
     list.end_pass();
@@ -288,10 +295,11 @@ glm::vec3 reach_from(const glm::vec3 &position_ws, const scene::Bounds &bounds_w
 ShadowLayers depth_layers(const ShadowSlot &slot, const ShadowInspection &inspection)
 {
   ShadowLayers layers;
-  layers.count = int(slot.views.size());
+  layers.count = inspection.array.texture() ? int(slot.views.size()) : 0;
   layers.texture = layers.count > 0 ? &inspection.array.texture() : nullptr;
   layers.first_layer = slot.place.first_layer;
   layers.size_px = slot.size_px;
+  layers.placed = slot.placed;
   layers.drawn = slot.drawn;
   if (slot.lamp.kind != scene::LampKind::Sun) {
     const glm::vec3 reach = reach_from(slot.lamp.position_ws(), inspection.caster_bounds_ws);

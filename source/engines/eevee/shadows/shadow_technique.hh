@@ -13,6 +13,7 @@
 #include "eevee_depth_shared.h"
 #include "eevee_shadow_shared.h"
 
+#include <bit>
 #include <limits>
 #include <optional>
 #include <span>
@@ -71,6 +72,8 @@ struct ShadowSlot {
   std::uint32_t render_offset_bytes = 0;
   /** Maps of suns and spots: half a step of their depths. 0 for depths of 32 bits. */
   float depth_half_step = 0.0F;
+  /** Layers that have a place in the array. They follow each other there. */
+  LayerMask placed = ~0U;
   /** Layers that were drawn and are still valid. */
   LayerMask drawn = 0;
   /** Layers that need not be drawn: those of `drawn`, and layers without a caster. */
@@ -85,6 +88,21 @@ struct ShadowSlot {
   [[nodiscard]] LayerMask all_layers() const
   {
     return (1U << views.size()) - 1U;
+  }
+  /** Number of layers in the array before \a layer, from the first of this slot on. */
+  [[nodiscard]] int index_of(int layer) const
+  {
+    return std::popcount(placed & ((1U << layer) - 1U));
+  }
+  /** Index in the array. */
+  [[nodiscard]] int array_layer(int layer) const
+  {
+    return place.first_layer + index_of(layer);
+  }
+  /** Number of layers in the array. */
+  [[nodiscard]] int placed_count() const
+  {
+    return index_of(int(views.size()));
   }
   /** Mark \a layers as out of date. */
   void invalidate(LayerMask layers)
@@ -250,6 +268,9 @@ inline constexpr float shadow_far_none = std::numeric_limits<float>::max();
  * change. Whole views without VisibleRange::boxes.
  */
 void crop_views(ShadowSlot &slot, const VisibleRange &visible);
+
+/** The layers of \a slot that the surfaces in the picture may look up. Conservative. */
+[[nodiscard]] LayerMask needed_layers(const ShadowSlot &slot, const VisibleRange &visible);
 
 /** Invalidate the layers of \a slot that changed casters touch, and update the near plane. */
 void update_for_casters(ShadowSlot &slot, ShadowCasters &casters);

@@ -201,6 +201,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
   place_lamps(points);
   fit(device, view, pixel_size, depths);
   std::ranges::for_each(scene_.state_->slots, [&](ShadowSlot &slot) { crop_views(slot, *visible_); });
+  scene_.place_cubes(device, *visible_);
   for_each_slot([](ShadowSlot &slot) { slot.discard_recorded(); });
   // Lamps are recorded array by array. The lamps of the distance cube use the same layers one after the other.
   for (std::size_t id = 0; id < shadow_array_count; id++) {
@@ -209,7 +210,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
         return;
       }
       const ShadowTechnique &technique = *slot.place.technique;
-      const LayerMask needed = technique.layers_needed(slot, *visible_) & slot.looked_up & slot.all_layers();
+      const LayerMask needed = needed_layers(slot, *visible_);
       const auto missing = [&] { return needed & ~slot.up_to_date & ~slot.recorded_up_to_date; };
       while (missing() != 0 && updated.part_count < parts_max) {
         const int left = parts_max == no_parts_max ? no_parts_max : parts_max - updated.part_count;
