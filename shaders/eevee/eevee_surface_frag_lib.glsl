@@ -43,10 +43,10 @@ void place_on_ray(inout Surface surface)
 {
 #ifdef HAS_COARSE_GRID
   vec2 ndc = gl_FragCoord.xy * vec2(view.place_right.w, view.place_up.w) - 1.0;
-  vec3 on_ray = gbuffer_position(ndc, gbuffer_depth_on_plane(surface.position_ws, surface.geometric_normal_ws));
-  // A lens of 1e12 m has rays that pass the surface at such distances, because of rounding.
-  float most = 2.0 * (length(dFdx(surface.position_ws)) + length(dFdy(surface.position_ws)));
-  surface.position_ws = distance(on_ray, surface.position_ws) <= most ? on_ray : surface.position_ws;
+  // With a lens of 1e12 m, SwiftShader interpolates positions that are not finite.
+  bool is_place = dot(surface.position_ws, surface.position_ws) <= 1e37;
+  surface.position_ws = is_place ? surface.position_ws : view.position_ws;
+  surface.position_ws = gbuffer_position(ndc, gbuffer_depth_on_plane(surface.position_ws, surface.geometric_normal_ws));
   surface.view_ws = normalized(to_viewer(surface.position_ws), view.back_ws);
 #endif
 }
