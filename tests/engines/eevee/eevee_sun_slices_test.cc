@@ -522,7 +522,10 @@ TEST(FittedCascades, HaveTheFewestTexelsOfTheirError)
   for (float pixel = 5e-4F; pixel < 0.5F; pixel *= 1.25F) {
     const std::vector<SunFit> shared = scene.fits(picture, true, 0, pixel, true);
     const std::vector<SunFit> alone = scene.fits(picture, true, 0, pixel, true, texel_in_pixels, 2 * SunScene::size_px);
-    EXPECT_LE(texel_count(alone), texel_count(shared)) << pixel;
+    // Only a sun that has the array for itself has smaller texels, for its 16 bits. Edges are rounded up, 138.24 texels
+    // to 139 here.
+    const double gain = std::pow(short_depth_gain, 2.0);
+    EXPECT_LE(double(texel_count(alone)), 1.02 * gain * double(texel_count(shared))) << pixel;
     if (texel_count(alone) < texel_count(shared)) {
       fewer++;
       // The error is that of both edges of texels, and texel() is the longer one.

@@ -333,18 +333,20 @@ SlicePlan sufficient_slices(const std::vector<SunSlices> &choices, int size_px, 
 
 /**
  * The number of slices with the fewest texels that have the error of sufficient_slices, with texels that are smaller by
- * short_depth_gain. \a enlarged_px: the largest edge for sufficient_slices. \a size_max_px, \a edge_max_px: \see
- * fit_sun.
+ * short_depth_gain if the sun has the array of maps for itself. \a enlarged_px: the largest edge for sufficient_slices.
+ * \a size_max_px, \a edge_max_px: \see fit_sun.
  */
 SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int enlarged_px, int size_max_px,
                       int edge_max_px, const CascadeSettings &settings)
 {
   SlicePlan plan = sufficient_slices(choices, size_px, enlarged_px, settings);
-  const double error = choices[plan.index].error * std::pow(double(size_px) / (short_depth_gain * plan.size_px), 2.0);
+  // Beside the maps of other lamps, depths have 32 bits.
+  const double gain = edge_max_px > size_max_px ? short_depth_gain : 1.0;
+  const double error = choices[plan.index].error * std::pow(double(size_px) / (gain * plan.size_px), 2.0);
   if (!settings.can_resize || settings.count > 0 || error == 0.0) {
     return plan;
   }
-  plan.size_px = std::min(int(std::ceil(short_depth_gain * plan.size_px)), size_max_px);
+  plan.size_px = std::min(int(std::ceil(gain * plan.size_px)), size_max_px);
   const auto map_count = [&](std::size_t i) { return double(choices[i].slices.size() + 1); };
   const auto texels = [&](const SlicePlan &one) { return map_count(one.index) * one.size_px * one.size_px; };
   for (std::size_t i = 0; i < choices.size(); i++) {

@@ -27,8 +27,9 @@ inline constexpr double texel_in_pixels_max = 0.2;
 /** Sizes of maps change by powers of this factor. */
 inline constexpr double resize_step = 1.189207115;
 /**
- * Fitted maps with a size of their own have texels that are smaller by this factor than the picture needs. Without it,
- * the steps of 16-bit depths, and the larger offset of receivers, would add to the error of pictures.
+ * Fitted maps of a sun that has the array for itself have texels that are smaller by this factor than the picture
+ * needs. Without it, the steps of 16-bit depths, and the larger offset of receivers, would add to the error of
+ * pictures.
  */
 inline constexpr double short_depth_gain = 1.08;
 /** The largest size of a map, over the size asked for, if a sun has the most maps. */
