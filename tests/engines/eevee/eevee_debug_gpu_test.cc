@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace gnomon::eevee {
 namespace {
 
@@ -175,6 +177,26 @@ TEST_F(DebugViewGpuTest, CascadesHoldDistancesAlongTheLightFromOnePlane)
     nearest.push_back(low);
   }
   EXPECT_NEAR(nearest[0], nearest[2], 1e-4F);
+}
+
+/** The ground has other distances at each corner of a map. Depths of such maps are measured from a plane along it. */
+TEST_F(DebugViewGpuTest, DistancesOfAFittedMapAreShownFromBlackToWhite)
+{
+  add_square({0, 0, 0}, 100.0F);
+  add_square({0, 0, 2}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0.6F, 0.8F, -1}, 20.0F);
+  Settings settings;
+  settings.shadow.map_size_px = 128;
+  settings.shadow.is_fitted_to_depth = true;
+  settings.shadow.cascades.count = 2;
+  Renderer renderer(*device, scene, {64, 64}, settings);
+  renderer.draw(test::camera_at({0, -6, 3}, {0, 10, 0}));
+  const Picture last = shadow(renderer, renderer.inspect().shadow_layers(0).size() - 1);
+  const auto count = [&](auto &&is_counted) { return std::ranges::count_if(last.pixels, is_counted); };
+  const auto shown = count([](const glm::vec4 &pixel) { return pixel.a > 0.0F; });
+  const auto white = count([](const glm::vec4 &pixel) { return pixel.a > 0.0F && pixel.r > 0.999F; });
+  EXPECT_GT(shown, 1000);
+  EXPECT_LT(double(white), 0.02 * double(shown));
 }
 
 TEST_F(DebugViewGpuTest, StoredDistancesAreShownTexelByTexel)

@@ -194,7 +194,9 @@ void SceneShadows::allocate(gpu::Device &device, ShaderCache &shaders)
   if (cube_count() + map_count() > 0 && !sampler_) {
     sampler_ = device.create_sampler({.name = "shadow_sampler"});
   }
-  resize(device, ShadowArrayId::Cubes, cube_layers());
+  if (!settings_.is_fitted_to_depth || cube_count() == 0) {
+    resize(device, ShadowArrayId::Cubes, state_->plan.cubes.end());
+  }
   resize(device, ShadowArrayId::DistanceCube, lamp_count(ShadowArrayId::DistanceCube) > 0 ? 6 : 0);
   if (map_count() == 0) {
     resize(device, ShadowArrayId::Maps, 0);
@@ -279,52 +281,38 @@ void SceneShadows::for_each_cube(Action &&action)
   }
 }
 
-int SceneShadows::cube_layers()
+void SceneShadows::place_cubes(gpu::Device &device, const VisibleRange &visible)
 {
   if (!settings_.is_fitted_to_depth) {
-    return state_->plan.cubes.end();
+    return;
   }
+  LayerMask placed = 0;
+  LayerMask missing = 0;
   int end = 0;
   int planned = 0;
   for_each_cube([&](const ShadowSlot &slot) {
-    end = slot.placed != 0 ? std::max(end, slot.place.first_layer + slot.index_of(slot.place.given.layer_count_max))
-                           : end;
-    planned += slot.place.given.layer_count_max;
-  });
-  if (end <= planned) {
-    return end;
-  }
-  // With the gaps of removed lamps, the array exceeds the plan.
-  for_each_cube([](ShadowSlot &slot) {
-    slot.placed = 0;
-    slot.invalidate(~0U);
-  });
-  return 0;
-}
-
-void SceneShadows::place_cubes(gpu::Device &device, const VisibleRange &visible)
-{
-  LayerMask placed = 0;
-  LayerMask missing = 0;
-  for_each_cube([&](const ShadowSlot &slot) {
+    const int layer_count = slot.index_of(slot.place.given.layer_count_max);
     placed |= slot.placed;
     missing |= needed_layers(slot, visible) & ~slot.placed;
+    end = layer_count > 0 ? std::max(end, slot.place.first_layer + layer_count) : end;
+    planned += slot.place.given.layer_count_max;
   });
-  if (missing == 0) {
-    return;
+  // With the gaps of removed lamps, the array can exceed the plan.
+  const bool is_new = placed == 0 || end > planned;
+  if (is_new || missing != 0) {
+    // Lamps whose points move, and views that move, may need another face each time. If the first faces do not suffice,
+    // all lamps get all, so that the array is created twice at most.
+    end = 0;
+    for_each_cube([&](ShadowSlot &slot) {
+      const LayerMask now = is_new ? needed_layers(slot, visible) : ~0U;
+      if (slot.placed != now || slot.place.first_layer != end) {
+        slot.placed = now;
+        slot.place.first_layer = end;
+        slot.invalidate(~0U);
+      }
+      end += slot.placed_count();
+    });
   }
-  // Lamps whose points move, and views that move, may need another face each time. If the first faces do not suffice,
-  // all lamps get all, so that the array is created twice at most.
-  int end = 0;
-  for_each_cube([&](ShadowSlot &slot) {
-    const LayerMask now = placed == 0 ? needed_layers(slot, visible) : ~0U;
-    if (slot.placed != now || slot.place.first_layer != end) {
-      slot.placed = now;
-      slot.place.first_layer = end;
-      slot.invalidate(~0U);
-    }
-    end += slot.placed_count();
-  });
   resize(device, ShadowArrayId::Cubes, end);
 }
 

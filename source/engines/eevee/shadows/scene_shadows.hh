@@ -115,9 +115,7 @@ class SceneShadows {
   void for_each_cube(Action &&action);
   void resize(gpu::Device &device, ShadowArrayId id, int layers);
   void place_render_blocks(gpu::Device &device);
-  /** Number of layers that the array of cubes needs before the next view. */
-  int cube_layers();
-  /** Assign layers to the faces of each cube that the surfaces of a view look up. */
+  /** Assign layers to the faces of each cube that the surfaces of a view look up, if maps are fitted. */
   void place_cubes(gpu::Device &device, const VisibleRange &visible);
   void place_maps(gpu::Device &device);
   void choose_map_format();

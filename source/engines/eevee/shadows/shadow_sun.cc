@@ -119,7 +119,13 @@ class SunTechnique final : public MapTechnique {
       layers.near_far.emplace_back(corner - fit.max.z, corner - fit.min.z);
       layers.tilts.emplace_back(-fit.slope * glm::dvec2(fit.max - fit.min));
     }
-    layers.shown = layers.near_far.empty() ? glm::vec2(0.0F) : layers.near_far.back();
+    if (!layers.near_far.empty()) {
+      // Those of the last map, which contains all visible receivers, between its corners.
+      const glm::vec2 tilt = layers.tilts.back();
+      const glm::vec2 rise = glm::max(tilt, glm::vec2(0.0F));
+      const glm::vec2 fall = glm::min(tilt, glm::vec2(0.0F));
+      layers.shown = layers.near_far.back() + glm::vec2(fall.x + fall.y, rise.x + rise.y);
+    }
     return layers;
   }
 };
