@@ -160,7 +160,7 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   if (is_edge && at_receiver > 0.0 && dot(open, vec4(1.0)) < dot(is_lit, vec4(1.0))) {
     blend = weighted_texels(open, vec2(inwards.x, fraction.x), vec2(inwards.y, fraction.y));
   }
-  // Beyond the end, light rises within a part of the error. The blend would be dashes along the foot of a lit wall.
+  // Beyond the end, light rises within a part of the error. A blend of texels shows dark dashes along the foot of a lit wall.
   blend = is_edge && at_receiver <= 0.0 ? min(-at_receiver / max(CONTACT_RISE * error, 1e-30), 1.0) : blend;
   return is_hidden ? 0.0 : blend;
 }
