@@ -7,7 +7,7 @@
 
 /** Largest number of lookups for casters, and number of lookups for visibility. */
 const int PENUMBRA_SEARCH_TAPS = 17;
-const int PENUMBRA_TAPS = 20;
+const int PENUMBRA_TAPS = 16;
 /** Casters at up to this multiple of their penumbra's half width are evaluated: those next to the lookup may be nearer. */
 const float PENUMBRA_REACH = 3.0;
 /** Rotation by the golden angle, as cosine and sine. */
@@ -15,8 +15,8 @@ const vec2 GOLDEN_TURN = vec2(cos(GOLDEN_ANGLE), sin(GOLDEN_ANGLE));
 /** From a lookup for casters to the next one: a turn by the golden angle, and a radius that is smaller by this factor. */
 const float PENUMBRA_SEARCH_RATIO = 1.6;
 const vec2 PENUMBRA_SEARCH_STEP = GOLDEN_TURN / PENUMBRA_SEARCH_RATIO;
-/** Number of lookups for the end of a caster between two radii. */
-const int PENUMBRA_EDGE_TAPS = 4;
+/** Number of further lookups for casters, on the disk of the smallest gap. */
+const int PENUMBRA_DISK_TAPS = 12;
 
 /** A receiver and a lamp with an extent. */
 struct PenumbraReceiver {
@@ -113,27 +113,21 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   // The smallest gap. The map shows the sides of casters that face the lamp. The edge of such a side casts the penumbra, and has smaller
   // gaps than its middle. Near casters also have the most visible edges.
   float gap = 0.0;
-  // A round caster ends between the outermost lookup that meets it and the next radius. There it has its smallest gap. The lookups for
-  // the end follow the search in one loop: llvmpipe would evaluate a second loop once for receivers without casters.
-  vec2 outermost = vec2(0.0);
-  float inside = 1.0;
-  float outside = PENUMBRA_SEARCH_RATIO;
+  // A caster's smallest gap is seldom at a lookup of the series. More lookups follow on the disk that darkens the receiver if the smallest
+  // gap so far is right. One loop makes both: llvmpipe would evaluate a second loop once for receivers without casters.
   bool is_search = true;
-  int edge_taps = 0;
+  int disk_taps = 0;
   int i = 0;
   do {
-    float middle = 0.5 * (inside + outside);
-    vec2 place = is_search ? tap : outermost * middle;
+    vec2 place = is_search ? tap : gap * sqrt((float(disk_taps) + 0.5) / float(PENUMBRA_DISK_TAPS)) * turn;
     float place_gap = shadow_gap(receiver, lights, place.x * axis_x + place.y * axis_y);
     bool is_caster = place_gap > 0.0 && length(place) <= PENUMBRA_REACH * place_gap;
-    outermost = is_search && is_caster && gap == 0.0 ? place : outermost;
     gap = is_caster ? (gap > 0.0 ? min(gap, place_gap) : place_gap) : gap;
-    inside = !is_search && is_caster ? middle : inside;
-    outside = is_search || is_caster ? outside : middle;
-    edge_taps += is_search ? 0 : 1;
+    disk_taps += is_search ? 0 : 1;
+    turn = is_search ? turn : complex_product(turn, GOLDEN_TURN);
     tap = complex_product(tap, PENUMBRA_SEARCH_STEP);
     is_search = is_search && ++i < PENUMBRA_SEARCH_TAPS && length(tap) > innermost;
-  } while (is_search || (gap > 0.0 && edge_taps < PENUMBRA_EDGE_TAPS));
+  } while (is_search || (gap > 0.0 && disk_taps < PENUMBRA_DISK_TAPS));
   float sun_scale = gap * (1.0 - sun_drop) * inversesqrt(max(2.0 - sun_drop, 1.0));
   float sum = 0.0;
   if (gap > 0.0) {

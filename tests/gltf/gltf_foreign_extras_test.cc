@@ -290,7 +290,7 @@ TEST(GltfForeignExtras, OfMembersThatStandBeforeOnesOfAnotherTypeDoNotCount)
 
 TEST(GltfForeignExtras, OfMembersThatDoNotCountTakeNoRoom)
 {
-  const std::string large = R"({"text":")" + std::string(40U << 20U, 'x') + R"("})";
+  const std::string large = fmt::format(R"({{"text":"{}"}})", std::string(40U << 20U, 'x'));
   const std::string materials = R"("materials":[{"extras":)" + large + "}]";
   const TemporaryFolder folder;
   const std::filesystem::path path =

@@ -532,9 +532,41 @@ TEST_F(PenumbraSceneTest, BelowABallThatHidesTheLampIsLittleLight)
     const float below = mean();
     scene.remove(ball);
     renderer.sync();
-    // The truth is 0. Without the lookups for the outermost part of the ball, area and point lamps leave 0.30.
+    // The truth is 0. Without the lookups on the disk of the smallest gap, area and point lamps leave 0.30.
     EXPECT_LT(below / mean(), 0.01F) << int(kind);
   }
+}
+
+/** Each part of a ball has another gap. The smallest one is at its edge, and gives the width of the penumbra. */
+TEST_F(PenumbraSceneTest, OfABallIsLikeThatOfManySamples)
+{
+  scene::Scene scene;
+  const auto material = test::add_material(scene, glm::vec3(1.0F));
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(8.0)));
+  test::add_object(scene, test::add_sphere_mesh(scene, material),
+                   glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, 0.8}), glm::dvec3(0.6)));
+  scene::Lamp lamp;
+  lamp.kind = scene::LampKind::Area;
+  lamp.area_size_x = 2.0F;
+  lamp.area_size_y = 0.7F;
+  test::add_lamp(scene, lamp, glm::translate(glm::dmat4(1.0), {0, 0, 3}));
+  const glm::ivec2 size_px{64, 64};
+  const scene::PlacedCamera camera = camera_above(0.15, 1.5);
+  const test::Picture shadowed = test::Renderer(*device, scene, size_px).picture(camera);
+  const test::Picture lit =
+      test::Renderer(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}}).picture(camera);
+  const int sample_count = 256;
+  SceneRenderer renderer(*device, scene, size_px,
+                         {.shadow = {.is_fitted_to_depth = true}, .sample_count = sample_count});
+  renderer.sync();
+  const std::vector<float> truth =
+      render_surface_layers(renderer, camera, sample_count, {.visible_lamps = {0}}).visibilities[0];
+  double squares = 0.0;
+  for (std::size_t i = 0; i < truth.size(); i++) {
+    squares += std::pow(double(shadowed.pixels[i].r / lit.pixels[i].r - truth[i]), 2.0);
+  }
+  // 0.051. Without the lookups on the disk of the smallest gap: 0.059.
+  EXPECT_LT(std::sqrt(squares / double(truth.size())), 0.055);
 }
 
 /** Surfaces that nothing hides from a lamp with a size, in pictures of one sample. */
