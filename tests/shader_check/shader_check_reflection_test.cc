@@ -235,9 +235,11 @@ TEST(Reflect, ABindingIsReadWhereACalledFunctionOrAGlobalReadsIt)
   };
   std::vector<std::string> expected{"called_block 1 5", "global_block 3 1", "untaken 5 1"};
   EXPECT_EQ(bindings(""), expected);
-  // With an array, glslang says that all stages read all textures.
-  expected = {"called_block 1 5", "global_block 3 1", "pictures 4 5", "untaken 5 5"};
-  EXPECT_EQ(bindings(" + texture(pictures[1], vec2(0)).x"), expected);
+  // With an array, glslang 12 says that all stages read all textures, and glslang 15 does not.
+  expected = {"called_block 1 5", "global_block 3 1", "pictures 4 1", "untaken 5 1"};
+  const std::vector<std::string> in_all_stages{"called_block 1 5", "global_block 3 1", "pictures 4 5", "untaken 5 5"};
+  const std::vector<std::string> with_array = bindings(" + texture(pictures[1], vec2(0)).x");
+  EXPECT_TRUE(with_array == expected || with_array == in_all_stages) << testing::PrintToString(with_array);
 }
 
 TEST(Reflect, KeepsPushConstantsApartWithOffsetsOfTheirMembers)
