@@ -191,32 +191,27 @@ std::vector<ProgramCheck> run_jobs(const std::vector<ShaderJob> &jobs, const Job
     }
   }
   const bool is_terminal = stderr_is_terminal();
+  std::vector<WorkResult> answers(jobs.size());
   const auto check_jobs = [&](const std::vector<std::size_t> &indices, shader_check::StageErrors errors) {
-    return run_in_workers(
+    std::vector<WorkResult> found = run_in_workers(
         indices.size(), options.limits, [&](std::size_t i) { return to_bytes(jobs[indices[i]].check(errors)); },
         [&](std::size_t done) {
           if (is_terminal) {
             show_progress(done, indices.size());
           }
         });
+    for (std::size_t i = 0; i < indices.size(); i++) {
+      answers[indices[i]] = std::move(found[i]);
+    }
   };
-  std::vector<WorkResult> answers = check_jobs(open, shader_check::StageErrors::All);
+  check_jobs(open, shader_check::StageErrors::All);
   // glslang crashes behind some errors if it does not stop at them. Their messages then come from a second check.
   std::vector<std::size_t> crashed;
-  for (std::size_t i = 0; i < open.size(); i++) {
-    if (answers[i].is_crash) {
-      crashed.push_back(open[i]);
-    }
-  }
-  std::vector<WorkResult> second = check_jobs(crashed, shader_check::StageErrors::First);
-  for (std::size_t i = 0, at = 0; i < open.size() && at < crashed.size(); i++) {
-    if (open[i] == crashed[at]) {
-      answers[i] = std::move(second[at++]);
-    }
-  }
-  for (std::size_t i = 0; i < open.size(); i++) {
-    const ShaderJob &job = jobs[open[i]];
-    ProgramCheck &result = results[open[i]];
+  std::ranges::copy_if(open, std::back_inserter(crashed), [&](std::size_t i) { return answers[i].is_crash; });
+  check_jobs(crashed, shader_check::StageErrors::First);
+  for (const std::size_t i : open) {
+    const ShaderJob &job = jobs[i];
+    ProgramCheck &result = results[i];
     if (!answers[i].failure.empty()) {
       result.target = job.target;
       result.messages.push_back({shader_check::Severity::Error, job.file, 1,

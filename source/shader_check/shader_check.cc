@@ -272,7 +272,7 @@ ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files
                                                       options.include_folders));
       }
       else {
-        checker.refuse("include", file.path, 1, "there is no such file, or it cannot be read");
+        checker.refuse("include", file.path, 1, "there is no such regular file, or it cannot be read");
         tried.missed.insert(file.path);
       }
     }

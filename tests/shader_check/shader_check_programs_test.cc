@@ -906,6 +906,25 @@ TEST(CheckProgram, AllErrorsOfAStageAreReportedInTheOrderOfTheCompiler)
   EXPECT_EQ(syntax.find("inner.glsl:1: error: "), 0U) << syntax;
 }
 
+TEST(CheckProgram, AnErrorOfTheLinkerIsOneMessageInTheOrderOfTheCompiler)
+{
+  // glslang prints its second line as an error, too.
+  const std::string block =
+      "#version 440\nlayout(xfb_buffer = 0, xfb_stride = 20) out B { layout(xfb_offset = 16) vec4 v; };\n";
+  const ProgramCheck stride =
+      check_texts({{"a.vert", block + "void main() { v = vec4(1); }\n"}}, for_target(CheckTarget::OpenGl));
+  ASSERT_EQ(stride.messages.size(), 1U) << messages_of(stride);
+  EXPECT_EQ(stride.messages[0].text,
+            "Linking vertex stage: xfb_stride is too small to hold all buffer entries: xfb_buffer 0, xfb_stride 20, "
+            "minimum stride needed: 32");
+  // By the alphabet, the layouts would come first.
+  for (const std::string text : {"#version 450\nlayout(points) out;\n", "#version 450\n"}) {
+    const ProgramCheck check = check_texts({{"b.geom", text}}, for_target(CheckTarget::Vulkan12));
+    ASSERT_GT(check.messages.size(), 1U) << text;
+    EXPECT_NE(check.messages[0].text.find("Missing entry point"), std::string::npos) << messages_of(check);
+  }
+}
+
 TEST(CheckProgram, CarriageReturnsAloneEndLines)
 {
   const Texts files = {

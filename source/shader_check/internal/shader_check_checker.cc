@@ -200,9 +200,10 @@ void Checker::finish()
   if (is_compiled_ && !has_errors()) {
     const std::size_t compiled = messages_.size();
     link_stages();
+    // Those of one rule at one line stay in the order of the linker.
     std::stable_sort(messages_.begin() + std::ptrdiff_t(compiled), messages_.end(),
                      [](const CheckMessage &a, const CheckMessage &b) {
-                       return std::tie(a.file, a.line, a.rule, a.text) < std::tie(b.file, b.line, b.rule, b.text);
+                       return std::tie(a.file, a.line, a.rule) < std::tie(b.file, b.line, b.rule);
                      });
   }
   // A header that is part of several stages gives the same message several times.

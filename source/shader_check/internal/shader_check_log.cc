@@ -202,7 +202,9 @@ std::vector<LinkMessage> link_messages(std::string_view log)
   std::istringstream lines{std::string(log)};
   for (std::string line; std::getline(lines, line);) {
     gpu::TextScanner scanner(line);
-    if (const std::optional<Severity> severity = take_severity(scanner)) {
+    const std::optional<Severity> severity = take_severity(scanner);
+    // Some of those lines have a severity as well, and are indented.
+    if (severity && (messages.empty() || !scanner.rest().starts_with(' '))) {
       messages.push_back({*severity, std::string(without_space_at_end(scanner.rest()))});
     }
     else if (!messages.empty() && !line.empty()) {
