@@ -792,7 +792,9 @@ void Checker::make_spirv()
 {
   for (std::size_t i = 0; i < c_.sources.size(); i++) {
     const Spirv &spirv = c_.spirv(i);
-    validate(i, spirv.words, spirv.log);
+    if (severity_of(Severity::Error, "spirv", c_.lines[i].level(SourcePosition{}.file, "spirv"))) {
+      validate(i, spirv.words, spirv.log);
+    }
     spirv_.emplace_back(c_.sources[i]->stage(), spirv.words);
   }
 }
