@@ -314,12 +314,14 @@ TEST_F(VulkanFailure, ALostDeviceIsAnErrorUntilAnotherIsMade)
   lose(&VulkanDeviceTable::vkGetQueryPoolResults);
 }
 
-/** Descriptor pools that are made, and that are used again. */
+/** Descriptor pools that are made, that are used again, and that are destroyed. */
 struct CountedPools {
   static inline PFN_vkCreateDescriptorPool real_create = nullptr;
   static inline PFN_vkResetDescriptorPool real_reset = nullptr;
+  static inline PFN_vkDestroyDescriptorPool real_destroy = nullptr;
   static inline int made = 0;
   static inline int reset = 0;
+  static inline int destroyed = 0;
 
   static VkResult VKAPI_PTR create_pool(VkDevice device, const VkDescriptorPoolCreateInfo *info,
                                         const VkAllocationCallbacks *allocator, VkDescriptorPool *pool)
@@ -332,14 +334,20 @@ struct CountedPools {
     reset++;
     return real_reset(device, pool, flags);
   }
+  static void VKAPI_PTR destroy_pool(VkDevice device, VkDescriptorPool pool, const VkAllocationCallbacks *allocator)
+  {
+    destroyed++;
+    real_destroy(device, pool, allocator);
+  }
 };
 
 /** Also where a pool gives more sets than it is made for. */
-TEST_F(VulkanFailure, SetsOfDescriptorsAreUsedAgain)
+TEST_F(VulkanFailure, SetsOfDescriptorsAreUsedAgainAndGivenBack)
 {
   CountedPools::real_create = std::exchange(context->vk.vkCreateDescriptorPool, &CountedPools::create_pool);
   CountedPools::real_reset = std::exchange(context->vk.vkResetDescriptorPool, &CountedPools::reset_pool);
-  CountedPools::made = CountedPools::reset = 0;
+  CountedPools::real_destroy = std::exchange(context->vk.vkDestroyDescriptorPool, &CountedPools::destroy_pool);
+  CountedPools::made = CountedPools::reset = CountedPools::destroyed = 0;
   const Texture picture = device->create_texture({.name = "p", .format = Format::RGBA32F, .width = 2, .height = 2});
   const Texture texel = device->create_texture({.name = "t", .format = Format::RGBA32F});
   const Framebuffer framebuffer = device->create_framebuffer({"p", {{&picture}}, {}});
@@ -370,6 +378,12 @@ void main()
   EXPECT_LE(CountedPools::made, 2);
   // A pool has at most 128 sets.
   EXPECT_GE(CountedPools::made + CountedPools::reset, draw_count * list_count / 128);
+  EXPECT_EQ(CountedPools::destroyed, 0);
+  device->trim();
+  EXPECT_EQ(CountedPools::destroyed, CountedPools::made);
+  device->submit(list);
+  device->finish();
+  EXPECT_EQ(CountedPools::made, CountedPools::destroyed + 1);
 }
 
 /** Barriers, of which one changes layouts, but orders nothing. */

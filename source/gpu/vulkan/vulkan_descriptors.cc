@@ -47,6 +47,18 @@ VkDescriptorSet VulkanDescriptors::allocate(VkDescriptorSetLayout layout)
   return set;
 }
 
+bool VulkanDescriptors::trim()
+{
+  const std::uint64_t done = submissions_.done();
+  return std::erase_if(pools_, [&](const Pool &pool) {
+           const bool is_unused = pool.number <= done;
+           if (is_unused) {
+             context_.vk.vkDestroyDescriptorPool(context_.device, pool.handle, nullptr);
+           }
+           return is_unused;
+         }) > 0;
+}
+
 void VulkanDescriptors::add_pool()
 {
   if (!pools_.empty() && pools_.front().number <= submissions_.done()) {

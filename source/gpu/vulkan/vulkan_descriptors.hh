@@ -18,6 +18,8 @@ class VulkanDescriptors {
 
   /** Valid until the open submission is submitted. */
   [[nodiscard]] VkDescriptorSet allocate(VkDescriptorSetLayout layout);
+  /** Destroy the pools that no submission in work uses. \return whether there was one */
+  bool trim();
 
  private:
   struct Pool {

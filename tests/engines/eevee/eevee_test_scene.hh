@@ -77,6 +77,12 @@ void edit_material(scene::Scene &scene, std::size_t index, Change &&change)
   scene.edit(handle_at(scene.materials(), index), change);
 }
 
+/** How far \a device moves a vertex at most, along each edge of a pixel: half a cell of its grid. */
+inline double vertex_shift_max_px(const gpu::Device &device)
+{
+  return std::exp2(-device.limits().subpixel_bits - 1);
+}
+
 inline void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolerance)
 {
   for (int i = 0; i < 3; i++) {
