@@ -38,11 +38,13 @@ TEST_F(ShaderFilesTest, AFileOfAnotherKindIsAnErrorOfThatFileAlone)
   write("bad.comp", "#version 450\nvoid main() { oops; }\n");
   write("scene.hlsl", "float4 main() : SV_Target { return 1; }\n");
   write("notes.glsl", "float f;\n");
-  const Finished finished = check("good.frag scene.hlsl notes.glsl missing.rgen bad.comp");
+  std::filesystem::create_directory(folder / "folder.vert");
+  const Finished finished = check("good.frag scene.hlsl notes.glsl missing.rgen folder.vert bad.comp");
   EXPECT_EQ(finished.status, 1);
   for (const std::string line :
        {"scene.hlsl:1: error: HLSL is not checked [stage]", "notes.glsl:1: error: its name ends in none of",
-        "missing.rgen:1: error: there is no such file", "bad.comp:2: error: 'oops'", "3 programs, 3 variants"}) {
+        "missing.rgen:1: error: there is no such regular file", "folder.vert:1: error: there is no such regular file",
+        "bad.comp:2: error: 'oops'", "4 programs, 4 variants"}) {
     EXPECT_NE(finished.out.find(line), std::string::npos) << line << " is not in:\n" << finished.out;
   }
   EXPECT_EQ(finished.out.find("good.frag:"), std::string::npos) << finished.out;
