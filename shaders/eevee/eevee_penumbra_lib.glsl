@@ -5,7 +5,7 @@
 // lamp. For a sun it is its distance to the receiver, metres. The map shows a caster that covers the point p of the lamp at the offset
 // gap · p from the receiver, so that it darkens the receiver if p is on the lamp.
 
-/** Largest number of lookups for casters, and number of lookups for visibility. */
+/** Largest number of lookups for casters in the series of radii, and number of lookups for visibility. */
 const int PENUMBRA_SEARCH_TAPS = 17;
 const int PENUMBRA_TAPS = 16;
 /** Casters at up to this multiple of their penumbra's half width are evaluated: those next to the lookup may be nearer. */
