@@ -119,7 +119,7 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   int disk_taps = 0;
   int i = 0;
   do {
-    vec2 place = is_search ? tap : gap * sqrt((float(disk_taps) + 0.5) / float(PENUMBRA_DISK_TAPS)) * turn;
+    vec2 place = is_search ? tap : gap * vogel_radius(disk_taps, PENUMBRA_DISK_TAPS) * turn;
     float place_gap = shadow_gap(receiver, lights, place.x * axis_x + place.y * axis_y);
     bool is_caster = place_gap > 0.0 && length(place) <= PENUMBRA_REACH * place_gap;
     gap = is_caster ? (gap > 0.0 ? min(gap, place_gap) : place_gap) : gap;
@@ -134,7 +134,7 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
     i = 0;
     do {
       // The points of vogel_disk, turned. A rotation from point to point needs no cosine and sine.
-      vec2 point = sqrt((float(i) + 0.5) / float(PENUMBRA_TAPS)) * turn;
+      vec2 point = vogel_radius(i, PENUMBRA_TAPS) * turn;
       turn = complex_product(turn, GOLDEN_TURN);
       // For a sun, points of equal solid angles: 1 - cos is proportional to the square of the radius.
       float drop = sun_drop * dot(point, point);

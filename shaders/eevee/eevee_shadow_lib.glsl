@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Visibility of a light, 1 lit and 0 in shadow, from the depths of its casters.
 #include "eevee/eevee_shadow_place_lib.glsl"
+#include "shared/eevee_disk_shared.h"
 #include "shared/eevee_light_shared.h"
 
 #ifdef USE_SHADOW_CUBE

@@ -5,6 +5,7 @@
 #ifndef EEVEE_ESM_SHARED_H
 #define EEVEE_ESM_SHARED_H
 
+#include "shared/eevee_disk_shared.h"
 #include "shared/shared_types.h"
 
 SHARED_BEGIN
@@ -160,7 +161,7 @@ SHARED_FUNCTION float esm_visibility_error(float exponent, float distance_error)
 }
 
 /**
- * Point \a index of \a count points that fill the unit disk evenly: Vogel's spiral (1979), repeated in four rotations of 90°, so that
+ * Point \a index of \a count points that fill the unit disk evenly: a Vogel disk, repeated in four rotations of 90°, so that
  * the mean of the points is the centre and their second moments are those of the disk. \a count: 1 (the centre) or a multiple of 4.
  */
 SHARED_FUNCTION vec2 esm_disk_point(int index, int count)
@@ -170,10 +171,7 @@ SHARED_FUNCTION vec2 esm_disk_point(int index, int count)
   }
   int ring = index / 4;
   int turn = index - 4 * ring;
-  float radius = sqrt((float(ring) + 0.5f) / float(count / 4));
-  // The golden angle, radians.
-  float angle = 2.39996323f * float(ring);
-  vec2 p = vec2(radius * cos(angle), radius * sin(angle));
+  vec2 p = vogel_disk(ring, count / 4);
   p = turn >= 2 ? -p : p;
   return turn == 1 || turn == 3 ? vec2(-p.y, p.x) : p;
 }

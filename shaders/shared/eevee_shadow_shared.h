@@ -177,17 +177,6 @@ SHARED_FUNCTION float weighted_texels(vec4 lit, vec2 columns, vec2 rows)
   return rows.x * (columns.x * lit.w + columns.y * lit.z) + rows.y * (columns.x * lit.x + columns.y * lit.y);
 }
 
-/** The golden angle, radians. */
-#define GOLDEN_ANGLE 2.39996323f
-
-/** Point \a i of \a count points that cover equal areas of the unit disk (Vogel 1979). \a i: 0 to count - 1. */
-SHARED_FUNCTION vec2 vogel_disk(int i, int count)
-{
-  float radius = sqrt((float(i) + 0.5f) / float(count));
-  float angle = GOLDEN_ANGLE * float(i);
-  return vec2(radius * cos(angle), radius * sin(angle));
-}
-
 /** Quotient for slopes. 0 for a plane seen edge-on, whose slope is undefined. */
 SHARED_FUNCTION float slope_quotient(float numerator, float denominator)
 {

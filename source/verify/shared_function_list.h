@@ -4,6 +4,7 @@
 #include "eevee_area_shared.h"
 #include "eevee_bsdf_shared.h"
 #include "eevee_depth_shared.h"
+#include "eevee_disk_shared.h"
 #include "eevee_esm_shared.h"
 #include "eevee_light_shared.h"
 #include "eevee_multiscatter_shared.h"

@@ -29,22 +29,6 @@ TEST(WeightedTexels, FollowTheOrderOfTextureGather)
   EXPECT_FLOAT_EQ(weighted_texels({0, 1, 0, 0}, {0.7F, 0.3F}, {0.4F, 0.6F}), 0.18F);
 }
 
-TEST(VogelDisk, CoversTheDiskEvenly)
-{
-  // Over the unit disk, the mean of the squared radius is 1/2 and the mean position is the centre.
-  vec2 mean(0.0F);
-  float mean_square = 0.0F;
-  constexpr int count = 32;
-  for (int i = 0; i < count; i++) {
-    const vec2 tap = vogel_disk(i, count);
-    EXPECT_LT(dot(tap, tap), 1.0F);
-    mean += tap / float(count);
-    mean_square += dot(tap, tap) / float(count);
-  }
-  EXPECT_NEAR(mean_square, 0.5F, 1e-5F);
-  EXPECT_LT(dot(mean, mean), 1e-3F);
-}
-
 TEST(CubeFace, LooksAlongItsLargestComponent)
 {
   // Ties go to the earlier axis. A face has z above 0 for directions in front of it.
