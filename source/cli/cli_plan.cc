@@ -67,7 +67,7 @@ std::string pictures_of(const PlanOptions &options, const std::string &scene)
 {
   const bool has_frames = !options.render.frames.range.empty();
   if (options.pictures.empty()) {
-    return fs::path(scene).stem().string() + (has_frames ? "_####.exr" : ".exr");
+    return scene_name(has_frames ? "{scene}_####.exr" : "{scene}.exr", scene);
   }
   if (options.render.scenes.size() > 1 && options.pictures.find("{scene}") == options.pictures.npos) {
     throw UsageError(fmt::format("--pictures '{}' has no {{scene}} for the names of the scenes", options.pictures));

@@ -249,7 +249,8 @@ std::string frame_name(const std::string &pattern, int frame)
 std::string scene_name(std::string pattern, const std::filesystem::path &scene)
 {
   constexpr std::string_view placeholder = "{scene}";
-  const std::string name = scene.stem().string();
+  std::string name = scene.stem().string();
+  std::replace(name.begin(), name.end(), '#', '_');
   for (std::size_t at = 0; (at = pattern.find(placeholder, at)) != pattern.npos; at += name.size()) {
     pattern.replace(at, placeholder.size(), name);
   }

@@ -128,7 +128,10 @@ struct PartName {
  * \a pattern with the last run of # replaced by \a frame, padded with zeros. Without a #, the pattern.
  */
 [[nodiscard]] std::string frame_name(const std::string &pattern, int frame);
-/** \a pattern with each `{scene}` replaced by the name of \a scene's file without its folder and extension. */
+/**
+ * \a pattern with each `{scene}` replaced by the name of \a scene's file without its folder and extension. A # in that name becomes _,
+ * because a # in the result stands for the number of a frame.
+ */
 [[nodiscard]] std::string scene_name(std::string pattern, const std::filesystem::path &scene);
 
 }  // namespace gnomon::cli

@@ -128,6 +128,7 @@ TEST(WorkPlanTest, NamesOfPartsAndPictures)
   EXPECT_EQ(frame_name("a#/b##c###.exr", 7), "a#/b##c007.exr");
   EXPECT_EQ(frame_name("b.exr", 7), "b.exr");
   EXPECT_EQ(scene_name("out/{scene}/{scene}_#.exr", "../in/a.b.glb"), "out/a.b/a.b_#.exr");
+  EXPECT_EQ(frame_name(scene_name("##_{scene}.exr", "take#2.glb"), 7), "07_take_2.exr");
 }
 
 // A division by 0, and a list of all memory.
