@@ -69,6 +69,7 @@ inline constexpr gnomon::verify::CompiledFunction<float> compiled_functions[] = 
   FUNCTION(plane_depths, plane_depths(a.x, vec2(a.y, a.z), vec2(b)))
   FUNCTION(texels_lit, texels_lit(a, b))
   FUNCTION(weighted_texels, vec4(weighted_texels(a, vec2(b), vec2(b.z, b.w)), 0, 0, 0))
+  FUNCTION(vogel_radius, vec4(vogel_radius(int(a.x), int(a.y)), 0, 0, 0))
   FUNCTION(vogel_disk, vec4(vogel_disk(int(a.x), int(a.y)), 0, 0))
   FUNCTION(slope_quotient, vec4(slope_quotient(a.x, a.y), 0, 0, 0))
 

@@ -198,12 +198,13 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
                                  in.a.w * in.b.x * in.b.z);
                     },
                     [](const Exact &) { return one(4.0); }, 1e-6, 2, 2});
-  sweeps.push_back({"vogel_disk",
-                    many(3000,
-                         [](Random &random) {
-                           const float count = std::floor(random.uniform(1, 64.9));
-                           return In{.a = {std::floor(random.uniform(0, count - 0.01)), count, 0, 0}};
-                         }),
+  const std::vector<In> points = many(3000, [](Random &random) {
+    const float count = std::floor(random.uniform(1, 64.9));
+    return In{.a = {std::floor(random.uniform(0, count - 0.01)), count, 0, 0}};
+  });
+  sweeps.push_back({"vogel_radius", points, [](const Exact &in) { return one(std::sqrt((in.a.x + 0.5) / in.a.y)); },
+                    [](const Exact &) { return one(1.0); }, 1e-6, 2, 4});
+  sweeps.push_back({"vogel_disk", points,
                     [](const Exact &in) {
                       // The golden angle: 2 pi (1 - 1 / golden ratio).
                       const double angle = in.a.x * std::numbers::pi * (3.0 - std::sqrt(5.0));
