@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // For fragment shaders: the base colour texture of the surface, and its alpha mask.
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_material_lib.glsl"
 
-layout(location = 3) in vec2 surface_uv;
+INTERPOLATED(3, vec2, surface_uv, grid_uv)
 
 layout(binding = BASE_COLOR_SLOT) uniform sampler2D base_color_texture;
 

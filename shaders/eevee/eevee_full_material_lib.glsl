@@ -6,9 +6,9 @@
 #  include "draw/draw_view_lib.glsl"
 #endif
 
-layout(location = 6) in vec4 surface_roughness_normal_uvs;
-layout(location = 7) in vec4 surface_occlusion_emissive_uvs;
-layout(location = 8) in vec4 surface_specular_uvs;
+INTERPOLATED(6, vec4, surface_roughness_normal_uvs, grid_roughness_normal_uvs)
+INTERPOLATED(7, vec4, surface_occlusion_emissive_uvs, grid_occlusion_emissive_uvs)
+INTERPOLATED(8, vec4, surface_specular_uvs, grid_specular_uvs)
 #ifdef USE_TRANSMISSION
 /**
  * Factor of the roughness, whether its texture is used, and the index of refraction. Mip levels of the picture behind are computed

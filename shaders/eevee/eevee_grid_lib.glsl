@@ -1,8 +1,29 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: their depth, also where the device moves vertices to a coarse grid, and interpolated values with them.
+// For fragment shaders: their depth and interpolated values, also where the device moves vertices to a coarse grid.
 #ifdef HAS_COARSE_GRID
 layout(location = 20) in vec4 grid_place;
 layout(location = 21) in float grid_behind;
+
+/** The place in the picture that interpolated values are of, which may be beside the centre of the pixel, and its derivatives. */
+vec2 grid_place_px = grid_place.xy / grid_place.w;
+mat2 grid_step_px = mat2(dFdx(grid_place_px), dFdy(grid_place_px));
+vec2 grid_moved_px = gl_FragCoord.xy - grid_place_px;
+/** Whether the triangle has an area: it is divided by that after its corners were moved. */
+bool grid_has_area = abs(determinant(grid_step_px)) > 1e-3;
+/** Factors of derivatives, whose sum is the change of an interpolated value from its place to the centre of the pixel. */
+vec2 grid_steps = grid_has_area ? inverse(grid_step_px) * grid_moved_px : vec2(0.0);
+/** The same, for values that have no bound: 0 where corners are so far outside of the picture that the place is unknown. */
+vec2 grid_near_steps = dot(grid_moved_px, grid_moved_px) <= 4.0 ? grid_steps : vec2(0.0);
+
+/**
+ * Declares an input, and a variable with its value at the centre of the pixel. Colors are inputs without it: beside a triangle that is
+ * smaller than a pixel, they would be outside of the range of those of its corners.
+ */
+#  define INTERPOLATED(LOCATION, TYPE, NAME, INPUT) \
+    layout(location = LOCATION) in TYPE INPUT; \
+    TYPE NAME = INPUT + grid_near_steps.x * dFdx(INPUT) + grid_near_steps.y * dFdy(INPUT);
+#else
+#  define INTERPOLATED(LOCATION, TYPE, NAME, INPUT) layout(location = LOCATION) in TYPE NAME;
 #endif
 
 /**
@@ -14,21 +35,13 @@ layout(location = 21) in float grid_behind;
 void write_depth_on_plane(float least_px)
 {
 #ifdef HAS_COARSE_GRID
-  vec2 place_px = grid_place.xy / grid_place.w;
   float depth = grid_place.z / grid_place.w;
-  vec2 across = dFdx(place_px);
-  vec2 up = dFdy(place_px);
-  // The area of the triangle divided by its area after its corners were moved.
-  float area = across.x * up.y - across.y * up.x;
-  bool has_area = abs(area) > 1e-3;
-  vec2 slope = vec2(dFdx(depth) * up.y - dFdy(depth) * across.y, dFdy(depth) * across.x - dFdx(depth) * up.x) / area;
-  vec2 moved_px = gl_FragCoord.xy - place_px;
-  bool is_kept = grid_behind <= 0.0 && dot(moved_px, moved_px) <= least_px * least_px;
-  float change = dot(slope, moved_px);
+  bool is_kept = grid_behind <= 0.0 && dot(grid_moved_px, grid_moved_px) <= least_px * least_px;
+  float change = grid_steps.x * dFdx(depth) + grid_steps.y * dFdy(depth);
   // Neither infinite nor NaN, as where corners are far outside of the picture.
   bool is_known = abs(change) <= 1.0;
-  gl_FragDepth = gl_FragCoord.z + (has_area && !is_kept && is_known ? change : 0.0);
-  if (!has_area && grid_behind <= 0.0) {
+  gl_FragDepth = gl_FragCoord.z + (!is_kept && is_known ? change : 0.0);
+  if (!grid_has_area && grid_behind <= 0.0) {
     discard;
   }
 #endif

@@ -7,9 +7,9 @@
 #include "eevee/eevee_normal_map_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 
-layout(location = 9) in vec4 surface_coat_uvs;
-layout(location = 17) in vec4 surface_sheen_uvs;
-layout(location = 16) in vec4 surface_anisotropy_coat_normal_uvs;
+INTERPOLATED(9, vec4, surface_coat_uvs, grid_coat_uvs)
+INTERPOLATED(17, vec4, surface_sheen_uvs, grid_sheen_uvs)
+INTERPOLATED(16, vec4, surface_anisotropy_coat_normal_uvs, grid_anisotropy_coat_normal_uvs)
 /** Factor of the coat's normal texture, which is 0 without one; from the vertex shader, as that of surface_tangent_ws. */
 layout(location = 19) flat in float surface_coat_normal_scale;
 

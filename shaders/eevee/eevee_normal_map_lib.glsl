@@ -8,7 +8,7 @@
  * vertex shader, because the derivatives of the normal depend on it: llvmpipe's invocations outside of a triangle read zeros
  * from storage blocks.
  */
-layout(location = 5) in vec4 surface_tangent_ws;
+INTERPOLATED(5, vec4, surface_tangent_ws, grid_tangent_ws)
 
 layout(binding = NORMAL_SLOT) uniform sampler2D normal_texture;
 

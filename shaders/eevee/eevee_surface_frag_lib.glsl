@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // For fragment shaders: the shaded point, from the outputs of eevee_surface_vert_lib.glsl.
 #include "draw/draw_view_lib.glsl"
+#include "eevee/eevee_grid_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 #ifdef HAS_COARSE_GRID
 #  include "eevee/eevee_gbuffer_lib.glsl"
 #endif
 
 layout(location = 0) in vec3 surface_position_ws;
-layout(location = 1) in vec3 surface_normal_ws;
+INTERPOLATED(1, vec3, surface_normal_ws, grid_normal_ws)
 
 #ifdef USE_SPECULAR
 /** Square of the change of the shading normal from pixel to pixel, the sum of that to the right and that up. */

@@ -10,11 +10,11 @@ layout(std140, binding = SURFACE_FUNCTION_BLOCK_SLOT) uniform surface_function_b
 };
 
 /** Both sets of the mesh, without the transforms of textures. */
-layout(location = 10) in vec4 surface_mesh_uvs;
+INTERPOLATED(10, vec4, surface_mesh_uvs, grid_mesh_uvs)
 layout(location = 11) in vec3 surface_position_os;
 #ifndef USE_LIGHT
 layout(location = 0) in vec3 surface_position_ws;
-layout(location = 1) in vec3 surface_normal_ws;
+INTERPOLATED(1, vec3, surface_normal_ws, grid_normal_ws)
 #endif
 
 /** Inputs of a surface function beside the textures of the material. */

@@ -8,7 +8,7 @@
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_area_shared.h"
 
-layout(location = 18) in vec4 surface_transmission_uvs;
+INTERPOLATED(18, vec4, surface_transmission_uvs, grid_transmission_uvs)
 layout(location = 12) flat in mat3 surface_object_from_world;
 
 layout(binding = TRANSMISSION_SLOT) uniform sampler2D transmission_texture;
