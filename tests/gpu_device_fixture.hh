@@ -83,6 +83,12 @@ inline std::unique_ptr<gpu::Device> testing_gl_device()
   return testing_device("gl");
 }
 
+/** For tests of Vulkan: with SwiftShader if it is tested, and otherwise with the driver that the loader finds. */
+inline std::unique_ptr<gpu::Device> testing_vulkan_device()
+{
+  return testing_device(testing_backend() == "swiftshader" ? "swiftshader" : "vulkan");
+}
+
 /** Base of test cases that need a device. Each test has a new one. */
 class GpuDeviceTest : public testing::Test {
  protected:

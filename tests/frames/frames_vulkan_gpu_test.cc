@@ -29,7 +29,7 @@ struct OrOutOfMemory<Member, VkResult(VKAPI_PTR *)(Arguments...)> {
 TEST(VulkanFrames, WhoseAllocationsFailOneAtATimeAreFollowedByTheRightPicture)
 {
   // Skips the test with the reason if there is none.
-  if (!test::testing_device("vulkan")) {
+  if (!test::testing_vulkan_device()) {
     return;
   }
   auto made =

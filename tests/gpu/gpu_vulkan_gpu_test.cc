@@ -16,7 +16,7 @@ class VulkanGpu : public testing::Test {
  protected:
   void SetUp() override
   {
-    device = test::testing_device("vulkan");
+    device = test::testing_vulkan_device();
     if (!device && !HasFailure()) {
       GTEST_SKIP();
     }
@@ -44,7 +44,7 @@ TEST_F(VulkanGpu, DescribesItselfInOneLine)
 
 TEST_F(VulkanGpu, DevicesStandBesideEachOther)
 {
-  const auto other = test::testing_device("vulkan");
+  const auto other = test::testing_vulkan_device();
   ASSERT_TRUE(other);
   EXPECT_EQ(drawn(*device, 1), std::vector<glm::vec4>(4, glm::vec4(1)));
   EXPECT_EQ(drawn(*other, 2), std::vector<glm::vec4>(4, glm::vec4(2)));
@@ -181,7 +181,7 @@ class VulkanFailure : public testing::Test {
  protected:
   void SetUp() override
   {
-    if (test::testing_device("vulkan")) {
+    if (test::testing_vulkan_device()) {
       make();
     }
     else if (!HasFailure()) {

@@ -253,6 +253,15 @@ class VulkanTestHost {
     return texels;
   }
 
+  /** Whether vertices in buffers may have attributes of \a format. */
+  [[nodiscard]] bool reads_vertices(VkFormat format) const
+  {
+    VkFormatProperties properties{};
+    of_instance<PFN_vkGetPhysicalDeviceFormatProperties>("vkGetPhysicalDeviceFormatProperties")(physical_device, format,
+                                                                                                &properties);
+    return (properties.bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) != 0;
+  }
+
   PFN_vkGetInstanceProcAddr loader = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;

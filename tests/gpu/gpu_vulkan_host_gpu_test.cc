@@ -26,7 +26,7 @@ class VulkanHostGpu : public testing::Test {
  protected:
   void SetUp() override
   {
-    const auto device = test::testing_device("vulkan");
+    const auto device = test::testing_vulkan_device();
     if (!device && !HasFailure()) {
       GTEST_SKIP();
     }
@@ -421,6 +421,9 @@ class FloatPicture {
 
 TEST_F(VulkanHostGpu, BuffersOfTheHostDrawWhatABatchDraws)
 {
+  if (!host->reads_vertices(VK_FORMAT_R16G16B16_SFLOAT)) {
+    GTEST_SKIP() << "the device reads no three half floats from buffers, as the normals of this test";
+  }
   const test::Vertices vertices;
   const test::InterleavedVertices interleaved(vertices);
   const VulkanTestHost::Buffer vertex_buffer = host->make_buffer(interleaved.bytes);

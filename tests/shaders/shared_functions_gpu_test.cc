@@ -100,7 +100,10 @@ TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
   const std::vector<glm::dvec4> values = results(function->expression);
   const Deviation worst = deviation(sweep(), values);
   RecordProperty("epsilons", fmt::format("{:.3g}", worst.epsilons));
-  EXPECT_LE(worst.epsilons, sweep().driver_epsilons) << worst.where;
+  // Vulkan lets sines be off by 2^-11, and SwiftShader's are off by 1.9e-4.
+  const bool has_coarse_sine = testing_backend() == "swiftshader" && sweep().name == "esm_disk_point";
+  const double bound = has_coarse_sine ? 0x1p-11 / 0x1p-23 : sweep().driver_epsilons;
+  EXPECT_LE(worst.epsilons, bound) << worst.where;
 
   // The C++ result has a bound too, so the difference is at most the sum of both. It is recorded for information.
   double difference = 0.0;

@@ -187,8 +187,8 @@ TEST_F(DistantMaskGpuTest, CoversItsShareAtAnyNumberOfSamples)
 
 TEST_F(DistantMaskGpuTest, CoversWhatTheAlphaOfVerticesLeaves)
 {
-  // A tenth of a texel from the place at which the middle of each fifth pixel is at an edge of texels. There, the share of
-  // one sample is 0.752 or 0.717: the last digit of the coordinate decides.
+  // A tenth of a texel from the place at which the middle of each fifth pixel is at an edge of texels. There, the share
+  // of one sample is 0.752 or 0.717: the last digit of the coordinate decides.
   add_leaf(scene::MipFilter::Linear, {0.1F / 128.0F, -0.1F / 128.0F, 0});
   // The red texels are below the cutoff only with that alpha.
   test::edit_material(scene, 0, [](scene::Material &material) { material.alpha_cutoff = 0.24F; });
