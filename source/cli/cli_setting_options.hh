@@ -45,12 +45,36 @@ template <typename Value>
     const scene::ShownLimits limits = scene::shown_limits(row, is_integer<Value>);
     const std::string_view unit = scene::shown_unit(row).text;
     return fmt::format("in [{:.10g} - {:.10g}]", limits.min, limits.max) + (unit.empty() ? "" : " ") +
-           std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0");
+           std::string(unit) + (row.zero.empty() || row.min <= 0.0 ? "" : ", or 0") +
+           (row.automatic.empty() ? "" : ", or ") + std::string(row.automatic);
   }
   if (!row.automatic.empty()) {
     words.push_back(row.automatic);
   }
   return words.empty() ? "" : fmt::format("{{{}}}", fmt::join(words, ","));
+}
+
+/** The type of a setting's values; for one that may be absent, of those that are not. */
+template <typename Value>
+struct PresentValue {
+  using Type = Value;
+};
+template <typename Value>
+struct PresentValue<std::optional<Value>> {
+  using Type = Value;
+};
+
+/** A default as text. An absent one has the row's word for it. */
+template <typename Value>
+[[nodiscard]] std::string default_text(const scene::Description &row, const Value &value)
+{
+  if constexpr (requires { value.has_value(); }) {
+    return value ? default_text(row, *value) : std::string(row.automatic);
+  }
+  else {
+    const bool is_zero = value == Value() && !row.zero.empty() && row.min > 0.0;
+    return is_zero ? std::string(row.zero) : scene::value_text(row, value);
+  }
 }
 
 /** The value that \a text stands for. Empty: none. */
@@ -127,7 +151,7 @@ class SettingOptions {
   void take(Access part, const std::function<bool(std::string_view)> &is_wanted = {})
   {
     Part::for_each_property([&](const auto &row) {
-      using Value = typename std::decay_t<decltype(row)>::Value;
+      using Value = typename PresentValue<typename std::decay_t<decltype(row)>::Value>::Type;
       if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value> || std::is_same_v<Value, std::string> ||
                     std::is_same_v<Value, eevee::PcfKernel>) {
         if (!row.option.empty() && (!is_wanted || is_wanted(row.option))) {
@@ -200,10 +224,7 @@ class SettingOptions {
     set->sentences += (set->sentences.empty() ? "" : " ") + std::string(row.sentence);
     set->sentences += row.makes_picture ? "" : " The picture does not depend on it.";
     for (std::size_t i = 0; i < defaults_.size(); i++) {
-      const Value &value = access(defaults_[i].settings);
-      const bool is_zero = value == Value() && !row.zero.empty() && row.min > 0.0;
-      set->defaults[i] +=
-          (set->defaults[i].empty() ? "" : ", ") + (is_zero ? std::string(row.zero) : scene::value_text(row, value));
+      set->defaults[i] += (set->defaults[i].empty() ? "" : ", ") + default_text(row, access(defaults_[i].settings));
     }
     set->is_right.push_back([row](const std::string &text) { return parse_value<Value>(row, text).has_value(); });
     set->apply.push_back([row, access](const std::string &text, T &settings) {
@@ -227,7 +248,8 @@ class SettingOptions {
       return;
     }
     const bool is_same = std::ranges::all_of(set.defaults, [&](const auto &text) { return text == set.defaults[0]; });
-    const bool is_value = set.is_right.size() == 1 && set.is_right[0](set.defaults[0]);
+    const bool is_value = set.is_right.size() == 1 && (set.is_right[0](set.defaults[0]) ||
+                                                       (!set.automatic.empty() && set.defaults[0] == set.automatic));
     set.default_text = !set.automatic.empty() ? set.automatic : is_same && is_value ? set.defaults[0] : "";
     set.default_sentence = is_same && is_value ? "" : set.defaults[0];
     for (std::size_t i = 1; i < defaults_.size() && !is_same; i++) {

@@ -51,7 +51,7 @@ TEST_F(CliSettings, EachOptionIsInTheHelpAndTakesWhatItsRowAllows)
     }
     const std::string option = "--" + std::string(row.option);
     EXPECT_NE(help.find("\n  " + option + ' '), std::string::npos) << option;
-    using Value = typename std::decay_t<decltype(row)>::Value;
+    using Value = typename PresentValue<typename std::decay_t<decltype(row)>::Value>::Type;
     const auto take = [&](std::string_view value) { right[option].emplace_back(value); };
     const auto refuse = [&](const std::string &value) {
       EXPECT_EQ(run(render + option + ' ' + value).status, 2) << option << ' ' << value;
@@ -82,6 +82,9 @@ TEST_F(CliSettings, EachOptionIsInTheHelpAndTakesWhatItsRowAllows)
       refuse("nan");
       if (takes_zero) {
         take("0");
+      }
+      if (!row.automatic.empty()) {
+        take(row.automatic);
       }
     }
   });
@@ -126,7 +129,7 @@ TEST_F(CliSettings, AReportHasThePicturesSettingsByTheirNames)
   const test::Finished finished =
       run("render '" GNOMON_SOURCE
           "/examples/scenes/plaza.glb' --backend null --size 16x8 --samples 3 --json out.json "
-          "--shadow-size 100 --pcf disk:7 --specular multi --seed 5 --exposure 1.5 "
+          "--shadow-size 100 --pcf disk:7 --specular multi --seed 5 --exposure 1.5 --emissive-points auto "
           "--cascade-range depth --shadow-memory 3 --view raw");
   ASSERT_EQ(finished.status, 0) << finished.err;
   const nlohmann::json settings = nlohmann::json::parse(read("out.json")).at("settings");
@@ -144,6 +147,7 @@ TEST_F(CliSettings, AReportHasThePicturesSettingsByTheirNames)
                                    {"view_transform", "raw"},
                                    {"shadow_kind", "hard"},
                                    {"shadow_exponent", nullptr},
+                                   {"emissive_point_count", nullptr},
                                    {"background", nullptr},
                                    {"can_resize_cascades", false}};
   for (const auto &[name, value] : expected.items()) {

@@ -647,6 +647,8 @@ class Pictures(unittest.TestCase):
                 with self.assertRaisesRegex(gnomon.InvalidEdit, f"renderer: {name} .* is not"):
                     setattr(renderer, name, value)
             self.assertEqual(getattr(renderer, name), good)
+        renderer.emissive_point_count = None
+        self.assertIsNone(renderer.emissive_point_count)
         with self.assertRaisesRegex(gnomon.InvalidEdit, "renderer: background"):
             renderer.background = "sky"
         with self.assertRaisesRegex(gnomon.DeviceError, "0x5"):

@@ -27,6 +27,8 @@ double system_seconds()
 
 Settings preview_settings(Settings settings, int shadow_divisor)
 {
+  // The picture that the preview stands for has this light.
+  settings.emissive_point_count = settings.emissive_points();
   settings.sample_count = 1;
   settings.noise_threshold = 0.0F;
   settings.sample_first = settings.sample_end = 0;

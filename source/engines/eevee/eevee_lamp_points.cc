@@ -164,20 +164,18 @@ RestDirections LampPoints::rest_directions(std::uint32_t seed) const
   return {};
 }
 
-LampPoint LampPoints::emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
+LampPoint emissive_point(const scene::EmissiveSurfaces &surfaces, std::uint32_t index, std::uint32_t stream, int count,
+                         int sample_count)
 {
-  const std::uint32_t stream = stream_of(sized, seed);
-  const scene::EmissivePoint chosen =
-      emission_->at(glm::dvec3(sobol_point(index * sized.direction_count + sized.direction, stream)));
-  const double area = chosen.area / double(sized.direction_count);
+  const scene::EmissivePoint chosen = surfaces.at(glm::dvec3(sobol_point(index, stream)));
+  const double area = chosen.area / double(count);
   const glm::dmat3 axes = axes_around(-chosen.normal);
   const glm::dmat4 world_from_lamp(glm::dvec4(axes[0], 0.0), glm::dvec4(axes[1], 0.0), glm::dvec4(axes[2], 0.0),
                                    glm::dvec4(chosen.position, 1.0));
-  LampPoint point{.light = sized.light,
-                  .world_from_lamp = glm::mat4(world_from_lamp),
+  LampPoint point{.world_from_lamp = glm::mat4(world_from_lamp),
                   .color = glm::vec3(glm::min(chosen.radiance * area, glm::dvec3(light_color_max)))};
   // All points of the picture together cover the surfaces by disks.
-  point.radius_sq = float(area / (pi * sample_count_));
+  point.radius_sq = float(area / (pi * sample_count));
   return point;
 }
 
@@ -205,7 +203,9 @@ SampledLampPoints LampPoints::sample(std::uint32_t index, std::uint32_t seed, Sa
   sampled.points.reserve(sized_.size());
   for (const Sized &sized : sized_) {
     if (sized.is_emission) {
-      sampled.points.push_back(emission_point(sized, index, seed));
+      sampled.points.push_back(emissive_point(*emission_, index * sized.direction_count + sized.direction,
+                                              stream_of(sized, seed), int(sized.direction_count), sample_count_));
+      sampled.points.back().light = sized.light;
       continue;
     }
     if (sized.world) {

@@ -61,6 +61,13 @@ struct SampledLampPoints {
  */
 [[nodiscard]] glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const glm::vec3 &toward_ws);
 
+/**
+ * A point of emissive surfaces. \a index: of the point among those of all samples, of which each has \a count.
+ * \a stream: selects the sequence of points. \a sample_count: samples for each pixel of the picture.
+ */
+[[nodiscard]] LampPoint emissive_point(const scene::EmissiveSurfaces &surfaces, std::uint32_t index,
+                                       std::uint32_t stream, int count, int sample_count);
+
 /** Samples points of all lamps with an extent. */
 class LampPoints {
  public:
@@ -114,7 +121,6 @@ class LampPoints {
   [[nodiscard]] static std::uint32_t stream_of(const Sized &sized, std::uint32_t seed);
   static void add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed, SampledLampPoints &sampled);
   [[nodiscard]] LampPoint world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
-  [[nodiscard]] LampPoint emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
 
   std::shared_ptr<const render_scene::WorldLight> world_;
   WorldDirections directions_;

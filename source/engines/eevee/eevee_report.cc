@@ -339,12 +339,12 @@ std::vector<FramePart> frame_parts(const ReportSource &source)
        has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
   const bool has_emission = shared.lights.emission().surfaces() != nullptr;
   part("light of emissive surfaces", has_emission,
-       has_emission ? fmt::format("{} points in each sample, chosen from {} patches", settings.emissive_point_count,
+       has_emission ? fmt::format("{} points in each sample, chosen from {} patches", settings.emissive_points(),
                                   shared.lights.emission().surfaces()->patch_count())
                     : "",
-       settings.emissive_point_count == 0     ? "not asked for"
-       : settings.planned_sample_count() == 1 ? "a picture of one sample has none"
-                                              : "no material emits light");
+       settings.emissive_points() > 0  ? "no material emits light"
+       : settings.emissive_point_count ? "not asked for"
+                                       : "a picture of one sample has none, unless asked for");
   part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
        has(f, Feature::ShadowCube) ? why_not("no visible surface looks a cube up") : no_shadow);
   part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 /**
  * The settings of the engine, with their rows (scene_property.hh). Checks of the engine, options, Python, the window,
@@ -99,11 +100,11 @@ struct Settings {
    */
   bool has_multiscatter = false;
   /**
-   * With several samples, each draws the light that this number of points of emissive surfaces give to other surfaces,
-   * with their shadows, up to `emissive_point_max`. 0, and pictures of one sample: emissive surfaces give no light to
-   * others.
+   * Each sample draws the light that this number of points of emissive surfaces give to other surfaces, with their
+   * shadows, up to `emissive_point_max`. 0: emissive surfaces give no light to others. Default: 4 with several samples,
+   * 0 with one, whose few points are a rough estimate that takes much of its time. \see emissive_points
    */
-  int emissive_point_count = 4;
+  std::optional<int> emissive_point_count{};
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /**
@@ -128,6 +129,11 @@ struct Settings {
   [[nodiscard]] int planned_sample_count() const
   {
     return sample_count == 0 ? open_ended_sample_count : sample_count;
+  }
+  /** `emissive_point_count`, or its default. */
+  [[nodiscard]] int emissive_points() const
+  {
+    return emissive_point_count.value_or(planned_sample_count() > 1 ? 4 : 0);
   }
   /** The rows of this struct alone: ShadowSettings has its own. */
   template <typename Visit>
@@ -185,9 +191,10 @@ constexpr void Settings::for_each_property(Visit &&visit)
   visit(property(&Settings::emissive_point_count,
                  {.name = "emissive_point_count",
                   .option = "emissive-points",
+                  .automatic = "auto",
                   .max = emissive_point_max,
-                  .sentence = "Points of emissive surfaces that light other surfaces in each of several samples. 0: "
-                              "emissive surfaces give no light to others."}));
+                  .sentence = "Points of emissive surfaces that light other surfaces in each sample. 0: emissive "
+                              "surfaces give no light to others. Absent: 4 with several samples, 0 with one."}));
   visit(property(&Settings::background, {.name = "background",
                                          .option = "background",
                                          .label = "Background",

@@ -213,13 +213,18 @@ TEST_F(BudgetGpuTest, TheFirstPictureAfterAnEditIsWholeAndShowsTheEdit)
   const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, budget_picture_size_px);
   draw::Target target = texture.target();
   target.encoding = draw::Encoding::SceneLinear;
+  // A plate that gives a fifth of the light.
+  const auto glow = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(glow, [](scene::Material &material) { material.emissive = glm::vec3(8.0F); });
+  test::add_object(scene, test::add_square_mesh(scene, glow), glm::translate(glm::dmat4(1), {0, 0, 4}));
   render_scene::RenderScene render_scene(*device, scene);
   Engine engine(render_scene, settings);
   // The parts of a preview fit together.
   Budgeted budgeted(render_scene, engine, 0.2 * budget);
-  // As the preview has it: each lamp as a whole, and smaller shadows.
+  // As the preview has it: each lamp as a whole, smaller shadows, and as many points of what emits light.
   Settings preview = settings;
   preview.sample_count = 1;
+  preview.emissive_point_count = settings.emissive_points();
   double bright = 0.0;
   double dark = 0.0;
   const auto expect_whole = [&](double &sum) {

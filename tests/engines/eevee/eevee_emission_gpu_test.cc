@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light that emissive surfaces give to others, compared with closed forms, on the driver.
 #include "eevee_closed_forms.hh"
+#include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 
@@ -81,6 +82,72 @@ TEST_F(EmissionTest, IsFinerWithMorePoints)
   // The disks of 16 points take 2 % of the light here, those of 256 less than 0.2 %.
   EXPECT_LT(error(1), 0.1);
   EXPECT_LT(error(16), 0.01);
+}
+
+TEST_F(EmissionTest, PointsThatAreAskedForLightAPictureOfOneSample)
+{
+  // The disks of 16 points have a radius of 0.14, which takes 2 % of the light at 1 m; the rest is of the few points.
+  for (const double x : {0.0, 0.4, 1.0}) {
+    const double expected = radiance.r * irradiance({x, 0, 0}) / pi;
+    EXPECT_EQ(seen(x, false, {}), glm::vec3(0.0F)) << "no light unless it is asked for";
+    EXPECT_NEAR(double(seen(x, false, {.emissive_point_count = 16}).r) / expected, 1.0, 0.06) << x;
+    EXPECT_NEAR(double(seen(x, true, {.emissive_point_count = 4}).r) / expected, 1.0, 0.25) << x;
+  }
+  // A plate that hides the square.
+  const auto black = test::add_material(scene, glm::vec3(0.0F));
+  test::add_object(scene, test::add_square_mesh(scene, black),
+                   glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, 0.9}), glm::dvec3(0.9)));
+  EXPECT_EQ(seen(0.0, false, {.emissive_point_count = 4}), glm::vec3(0.0F));
+  EXPECT_GT(seen(0.0, true, {.emissive_point_count = 4}).r, 0.1F);
+}
+
+TEST_F(EmissionTest, EditsOfOneSampleWithPointsGiveThePictureOfANewRenderer)
+{
+  const auto black = test::add_material(scene, glm::vec3(0.0F));
+  const auto plate = test::add_object(scene, test::add_square_mesh(scene, black),
+                                      glm::scale(glm::translate(glm::dmat4(1.0), {0.5, 0, 0.5}), glm::dvec3(0.4)));
+  Settings settings{.emissive_point_count = 4};
+  const scene::PlacedCamera camera = test::camera_at({3.0F, 0.0F, 1.5F}, {0.0F, 0.0F, 0.0F});
+  SceneRenderer live(*device, scene, {24, 16}, settings);
+  const auto picture_of = [&](SceneRenderer &renderer) {
+    renderer.sync();
+    renderer.draw(camera);
+    return renderer.read_picture();
+  };
+  std::vector<glm::vec4> last;
+  const auto expect_same = [&](const char *after) {
+    live.set_settings(settings);
+    const std::vector<glm::vec4> picture = picture_of(live);
+    SceneRenderer fresh(*device, scene, {24, 16}, settings);
+    EXPECT_TRUE(picture == picture_of(fresh)) << after;
+    EXPECT_FALSE(picture == last) << after << ": no effect";
+    last = picture;
+  };
+  expect_same("start");
+  scene.edit(emitter, [](scene::Material &material) { material.emissive *= 2.0F; });
+  expect_same("brighter");
+  scene.set_transform(square, glm::scale(glm::translate(glm::dmat4(1.0), {0.3, 0, 1}), glm::dvec3(half_edge)));
+  expect_same("the square is moved");
+  scene.set_transform(plate, glm::scale(glm::translate(glm::dmat4(1.0), {0.2, 0, 0.5}), glm::dvec3(0.4)));
+  expect_same("the plate is moved");
+  settings.seed = 1;
+  expect_same("other points");
+  settings.emissive_point_count = 2;
+  expect_same("fewer points");
+  settings.sample_count = 3;
+  expect_same("several samples");
+  settings.sample_count = 1;
+  expect_same("one sample");
+  settings.emissive_point_count.reset();
+  expect_same("not asked for");
+  settings.emissive_point_count = 4;
+  expect_same("asked for");
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 1.5F}, {0, 0, -1}, 1.0F);
+  expect_same("a lamp before the points");
+  scene.set_transform(square, glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, 1}), glm::dvec3(half_edge)));
+  expect_same("the square is moved back");
+  scene.remove(square);
+  expect_same("the square is removed");
 }
 
 TEST_F(EmissionTest, OccludersGiveShadow)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Resources and passes of the light of emissive surfaces, by their names in the backend.
 #include "eevee_emission.hh"
+#include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -43,9 +44,45 @@ TEST(Emission, WithoutPointsIsThatOfASceneWithoutEmission)
   const glm::vec3 bright(2.0F);
   EXPECT_EQ(names_of(bright, {.sample_count = 1}), names_of(black, {.sample_count = 1}));
   EXPECT_EQ(names_of(bright, {.sample_count = 4, .emissive_point_count = 0}), names_of(black, {.sample_count = 4}));
-  const std::set<std::string> all = names_of(bright, {.sample_count = 4});
-  EXPECT_NE(all, names_of(black, {.sample_count = 4}));
-  EXPECT_TRUE(std::ranges::any_of(all, [](const std::string &name) { return name.starts_with("shadow_cubes"); }));
+  // Several samples have points, and one has if it is asked for them.
+  for (const Settings &settings :
+       {Settings{.sample_count = 4}, Settings{.sample_count = 1, .emissive_point_count = 4}}) {
+    const std::set<std::string> all = names_of(bright, settings);
+    EXPECT_NE(all, names_of(black, settings)) << settings.sample_count;
+    EXPECT_TRUE(std::ranges::any_of(all, [](const std::string &name) { return name.starts_with("shadow_cubes"); }));
+  }
+}
+
+TEST(Emission, ShadowsOfThePointsOfOneSampleAreKept)
+{
+  scene::Scene scene;
+  const auto white = test::add_material(scene, glm::vec3(1.0F));
+  const auto bright = test::add_material(scene, glm::vec3(1.0F));
+  scene.edit(bright, [](scene::Material &value) { value.emissive = glm::vec3(2.0F); });
+  test::add_object(scene, test::add_square_mesh(scene, white), glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)));
+  const auto box = test::add_object(scene, test::add_box_mesh(scene, white),
+                                    glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, 0.5}), glm::dvec3(0.25)));
+  test::add_object(scene, test::add_square_mesh(scene, bright), glm::translate(glm::dmat4(1.0), {0, 0, 2}));
+  const auto lamp = test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0.2F, 0.1F, -1}, 1.0F);
+  scene.edit(lamp, [](scene::Lamp &value) { value.shadow.kind = scene::ShadowKind::None; });
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  SceneRenderer renderer(*device, scene, {32, 24}, {.emissive_point_count = 3});
+  scene::PlacedCamera camera = test::camera_at({0, -4, 3}, {0, 0, 0});
+  const auto faces_drawn = [&] {
+    renderer.sync();
+    renderer.draw(camera);
+    return renderer.inspect().shadow_counters().faces_drawn;
+  };
+  const std::uint64_t first = faces_drawn();
+  EXPECT_GE(first, 3U);
+  camera = test::camera_at({0.1F, -4, 3}, {0, 0, 0});
+  EXPECT_EQ(faces_drawn(), 0U) << "another view";
+  scene.edit(lamp, [](scene::Lamp &value) { value.intensity = 2.0F; });
+  EXPECT_EQ(faces_drawn(), 0U) << "another light of the lamp";
+  scene.edit(bright, [](scene::Material &value) { value.emissive = glm::vec3(3.0F); });
+  EXPECT_EQ(faces_drawn(), 0U) << "more light from the same points";
+  scene.set_transform(box, glm::scale(glm::translate(glm::dmat4(1.0), {0.2, 0, 0.5}), glm::dvec3(0.25)));
+  EXPECT_GE(faces_drawn(), 3U) << "a moved caster";
 }
 
 TEST(Emission, TheTableIsMadeAgainOnlyForWhatEmits)

@@ -2,6 +2,7 @@
 #include "internal/eevee_lights.hh"
 #include "internal/eevee_resource_report.hh"
 
+#include "eevee_sequence_shared.h"
 #include "eevee_settings.hh"
 #include "internal/eevee_material_variants.hh"
 #include "shadows/scene_shadows.hh"
@@ -59,7 +60,7 @@ int light_texture_width(std::size_t count, const gpu::Device &device)
 bool SceneLights::sync(const render_scene::RenderScene &scene, const Settings &settings,
                        std::uint64_t settings_revision, std::uint64_t shaders_revision, SceneShadows &shadows)
 {
-  emission_.update(scene, settings.planned_sample_count() > 1 && settings.emissive_point_count > 0);
+  emission_.update(scene, settings.emissive_points() > 0);
   const Key key{scene.lamps_revision(), scene.objects().revision(), scene.passes_revision(),
                 settings_revision,      shaders_revision,           shadows.viewports_revision(),
                 emission_.revision(),   scene.content_revision()};
@@ -91,8 +92,20 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
     lower_range(lamp, settings.light_threshold);
   }
   const std::size_t emission_first = placed.size();
-  const int emissive_count = emission_.surfaces() ? settings.emissive_point_count : 0;
+  const int emissive_count = emission_.surfaces() ? settings.emissive_points() : 0;
   std::ranges::copy(emission_lamps(emissive_count, bounds_ws), std::back_inserter(placed));
+  std::vector<LampPoint> emissive_points;
+  if (shading == LampShading::Whole) {
+    // The points of the one sample do not move, so that their shadows are kept.
+    for (int i = 0; i < emissive_count; i++) {
+      const LampPoint &point = emissive_points.emplace_back(emissive_point(
+          *emission_.surfaces(), std::uint32_t(i), shared::mixed_bits(settings.seed) + std::uint32_t(emission_first),
+          emissive_count, sample_count));
+      scene::PlacedLamp &lamp = placed[emission_first + std::size_t(i)];
+      lamp.world_from_lamp = glm::dmat4(point.world_from_lamp);
+      lamp.radius = 0.0F;
+    }
+  }
   const std::size_t world_first = placed.size();
   if (world) {
     std::ranges::copy(world_lamps(*world, world_.directions().count), std::back_inserter(placed));
@@ -111,6 +124,12 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
     set_kind(lamps, world_first + world->suns.size(), placed.size(), LIGHT_WORLD);
   }
   set_kind(lamps, emission_first, world_first, LIGHT_SURFACE);
+  for (std::size_t i = 0; i < lamps.lights.size() && !emissive_points.empty(); i++) {
+    const std::size_t lamp = lamps.lamp_index[i];
+    if (lamp >= emission_first && lamp < world_first) {
+      lamps.lights[i] = light_at(lamps.lights[i], emissive_points[lamp - emission_first]);
+    }
+  }
   if (shading == LampShading::Point) {
     set_highlights(lamps, placed, emission_first, sample_count, bounds_ws);
   }
@@ -121,7 +140,7 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   planned_bounds_ws = bounds_ws;
   points = shading == LampShading::Point
                ? LampPoints(placed, lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
-                            world_.directions(), sample_count, emission_.surfaces(), settings.emissive_point_count)
+                            world_.directions(), sample_count, emission_.surfaces(), emissive_count)
                : LampPoints();
   is_left_out.clear();
   for (int i = 0; i < lamps.light_count(); i++) {
