@@ -129,8 +129,8 @@ struct PartName {
  */
 [[nodiscard]] std::string frame_name(const std::string &pattern, int frame);
 /**
- * \a pattern with each `{scene}` replaced by the name of \a scene's file without its folder and extension. A # in that name becomes _,
- * because a # in the result stands for the number of a frame.
+ * \a pattern with each `{scene}` replaced by the name of \a scene's file without its folder and extension. A # in that
+ * name becomes _, because a # in the result stands for the number of a frame.
  */
 [[nodiscard]] std::string scene_name(std::string pattern, const std::filesystem::path &scene);
 
