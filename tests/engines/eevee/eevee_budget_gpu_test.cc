@@ -213,7 +213,7 @@ TEST_F(BudgetGpuTest, TheFirstPictureAfterAnEditIsWholeAndShowsTheEdit)
   const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, budget_picture_size_px);
   draw::Target target = texture.target();
   target.encoding = draw::Encoding::SceneLinear;
-  // A plate that gives a fifth of the light.
+  // A plate that gives much of the light: without its points, the differences below are 0.28 to 0.41.
   const auto glow = test::add_material(scene, glm::vec3(0.0F));
   scene.edit(glow, [](scene::Material &material) { material.emissive = glm::vec3(8.0F); });
   test::add_object(scene, test::add_square_mesh(scene, glow), glm::translate(glm::dmat4(1), {0, 0, 4}));

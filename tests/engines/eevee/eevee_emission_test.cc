@@ -68,13 +68,14 @@ TEST(Emission, ShadowsOfThePointsOfOneSampleAreKept)
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   SceneRenderer renderer(*device, scene, {32, 24}, {.emissive_point_count = 3});
   scene::PlacedCamera camera = test::camera_at({0, -4, 3}, {0, 0, 0});
+  std::uint64_t before = 0;
   const auto faces_drawn = [&] {
     renderer.sync();
     renderer.draw(camera);
-    return renderer.inspect().shadow_counters().faces_drawn;
+    const std::uint64_t now = renderer.inspect().shadow_counters().faces_drawn;
+    return now - std::exchange(before, now);
   };
-  const std::uint64_t first = faces_drawn();
-  EXPECT_GE(first, 3U);
+  EXPECT_GE(faces_drawn(), 3U);
   camera = test::camera_at({0.1F, -4, 3}, {0, 0, 0});
   EXPECT_EQ(faces_drawn(), 0U) << "another view";
   scene.edit(lamp, [](scene::Lamp &value) { value.intensity = 2.0F; });

@@ -262,6 +262,10 @@ LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_d
   if (part.rows) {
     clear.scissor = {{0, part.rows->first}, {slot.size_px, part.rows->count}};
   }
+  else if (slot.size_px < recording.array.texture().desc().width) {
+    // The rest of a layer is not looked up. To clear it would take longer than to draw a small shadow.
+    clear.scissor = clear.viewport;
+  }
   gpu::PassActions keep = clear;
   keep.depth_load = gpu::LoadAction::Load;
   const bool is_one_pass = recording.layer_pass != LayerPass::Single && with_casters != 0;
