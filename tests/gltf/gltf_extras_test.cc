@@ -55,6 +55,15 @@ TEST(GltfColor, Vec3IsOpaque)
   EXPECT_EQ(only_mesh(scene).colors, (std::vector<glm::vec4>{{0, 0, 1, 1}, {0, 1, 0, 1}, {1, 0, 0, 1}}));
 }
 
+TEST(GltfColor, BlackAtAllVerticesIsNamed)
+{
+  const auto blacks_with = [](float last) {
+    return import(colored_triangle(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, last, 1}, Float32, "VEC4"));
+  };
+  EXPECT_WARNING(blacks_with(0.0F), "mesh 'mesh': its vertex colours are all black, which makes its base colour black");
+  EXPECT_NO_WARNING(blacks_with(0.25F), "colour");
+}
+
 TEST(GltfColor, NormalizedIntegersAreFractions)
 {
   const json normalized = {{"normalized", true}};

@@ -213,6 +213,11 @@ std::vector<glm::vec4> PrimitiveReader::read_colors()
       losses.bad_colors += colors.back() == color ? 0 : 1;
     }
     losses.report(warnings_, what_, topology_);
+    // Converters write zeros where the source had no colours.
+    if (!colors.empty() &&
+        std::ranges::all_of(colors, [](const glm::vec4 &color) { return glm::vec3(color) == glm::vec3(0.0F); })) {
+      warnings_.add(what_, "its vertex colours are all black, which makes its base colour black");
+    }
   }
   catch (const Fault &fault) {
     warnings_.add(what_, std::string("its vertex colours are left out: ") + fault.what());
