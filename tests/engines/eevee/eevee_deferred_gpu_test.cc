@@ -113,9 +113,10 @@ const Settings with_small_shadows = {.shadow = {.cube_size_px = 256, .map_size_p
 constexpr float tolerance = 3e-4F;
 /**
  * Beyond the end of a caster, light rises within a fortieth of a texel (CONTACT_RISE), where it differs more. Measured:
- * one pixel, by 4.9e-4 to 9.4e-4.
+ * with OpenGL one pixel, by 7.9e-4 to 9.4e-4; with lavapipe two, by 3.1e-4 to 5.9e-4; with SwiftShader one, by 3.6e-4
+ * to 9.8e-4.
  */
-constexpr int contact_pixels_max = 1;
+constexpr int contact_pixels_max = 2;
 constexpr float contact_tolerance = 2e-3F;
 
 void expect_equal(const Picture &deferred, const Picture &forward)
