@@ -8,7 +8,7 @@ layout(location = 21) in float grid_behind;
 vec2 grid_place_px = grid_place.xy / grid_place.w;
 mat2 grid_step_px = mat2(dFdx(grid_place_px), dFdy(grid_place_px));
 vec2 grid_moved_px = gl_FragCoord.xy - grid_place_px;
-/** Whether the triangle has an area: it is divided by that after its corners were moved. */
+/** Whether the triangle's area before its corners were moved is more than a thousandth of that after. */
 bool grid_has_area = abs(determinant(grid_step_px)) > 1e-3;
 /** Factors of derivatives, whose sum is the change of an interpolated value from its place to the centre of the pixel. */
 vec2 grid_steps = grid_has_area ? inverse(grid_step_px) * grid_moved_px : vec2(0.0);
@@ -16,7 +16,7 @@ vec2 grid_steps = grid_has_area ? inverse(grid_step_px) * grid_moved_px : vec2(0
 vec2 grid_near_steps = dot(grid_moved_px, grid_moved_px) <= 4.0 ? grid_steps : vec2(0.0);
 
 /**
- * Declares an input, and a variable with its value at the centre of the pixel. Colors are inputs without it: beside a triangle that is
+ * Declares an input, and a variable with its value at the centre of the pixel. Colours are inputs without it: beside a triangle that is
  * smaller than a pixel, they would be outside of the range of those of its corners.
  */
 #  define INTERPOLATED(LOCATION, TYPE, NAME, INPUT) \

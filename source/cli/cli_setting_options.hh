@@ -54,16 +54,6 @@ template <typename Value>
   return words.empty() ? "" : fmt::format("{{{}}}", fmt::join(words, ","));
 }
 
-/** The type of a setting's values; for one that may be absent, of those that are not. */
-template <typename Value>
-struct PresentValue {
-  using Type = Value;
-};
-template <typename Value>
-struct PresentValue<std::optional<Value>> {
-  using Type = Value;
-};
-
 /** A default as text. An absent one has the row's word for it. */
 template <typename Value>
 [[nodiscard]] std::string default_text(const scene::Description &row, const Value &value)
@@ -151,7 +141,7 @@ class SettingOptions {
   void take(Access part, const std::function<bool(std::string_view)> &is_wanted = {})
   {
     Part::for_each_property([&](const auto &row) {
-      using Value = typename PresentValue<typename std::decay_t<decltype(row)>::Value>::Type;
+      using Value = typename scene::PresentValue<typename std::decay_t<decltype(row)>::Value>::Type;
       if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value> || std::is_same_v<Value, std::string> ||
                     std::is_same_v<Value, eevee::PcfKernel>) {
         if (!row.option.empty() && (!is_wanted || is_wanted(row.option))) {

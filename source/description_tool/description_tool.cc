@@ -25,21 +25,12 @@ namespace gnomon {
 
 namespace {
 
-template <typename Value>
-struct Content {
-  using Type = Value;
-};
-template <typename Value>
-struct Content<std::optional<Value>> {
-  using Type = Value;
-};
-
 /** Words for values of an enumeration, or limits of a number. */
 template <typename Value>
 std::string values_text(const scene::Description &row)
 {
   if constexpr (requires(Value value) { value.has_value(); }) {
-    return values_text<typename Content<Value>::Type>(row) + ", or absent";
+    return values_text<typename scene::PresentValue<Value>::Type>(row) + ", or absent";
   }
   else if constexpr (std::is_enum_v<Value>) {
     return fmt::format("{}", fmt::join(scene::words<Value>, ", "));

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,16 @@
  * rows, so that a property or a setting is described once.
  */
 namespace gnomon::scene {
+
+/** The type of a property's values; for one that may be absent, of those that are not. */
+template <typename Value>
+struct PresentValue {
+  using Type = Value;
+};
+template <typename Value>
+struct PresentValue<std::optional<Value>> {
+  using Type = Value;
+};
 
 inline constexpr double float_max = std::numeric_limits<float>::max();
 

@@ -51,7 +51,7 @@ TEST_F(CliSettings, EachOptionIsInTheHelpAndTakesWhatItsRowAllows)
     }
     const std::string option = "--" + std::string(row.option);
     EXPECT_NE(help.find("\n  " + option + ' '), std::string::npos) << option;
-    using Value = typename PresentValue<typename std::decay_t<decltype(row)>::Value>::Type;
+    using Value = typename scene::PresentValue<typename std::decay_t<decltype(row)>::Value>::Type;
     const auto take = [&](std::string_view value) { right[option].emplace_back(value); };
     const auto refuse = [&](const std::string &value) {
       EXPECT_EQ(run(render + option + ' ' + value).status, 2) << option << ' ' << value;

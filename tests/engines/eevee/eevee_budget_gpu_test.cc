@@ -221,7 +221,7 @@ TEST_F(BudgetGpuTest, TheFirstPictureAfterAnEditIsWholeAndShowsTheEdit)
   Engine engine(render_scene, settings);
   // The parts of a preview fit together.
   Budgeted budgeted(render_scene, engine, 0.2 * budget);
-  // As the preview has it: each lamp as a whole, smaller shadows, and as many points of what emits light.
+  // The preview shades each lamp as a whole. It has smaller shadows, and the picture's number of emissive points.
   Settings preview = settings;
   preview.sample_count = 1;
   preview.emissive_point_count = settings.emissive_points();
