@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace gnomon::test {
 
@@ -32,8 +34,12 @@ inline std::string swiftshader_driver()
   return path;
 }
 
-/** \throws Error. Messages of Vulkan's validation layers are errors, or failures where they come from a destructor. */
-inline std::unique_ptr<gpu::Device> create_testing_device(const std::string &backend)
+/**
+ * \throws Error. Messages of Vulkan's validation layers are errors, or failures where they come from a destructor.
+ * \a shader_cache_folder: for SPIR-V; Mesa's driver of OpenGL has a cache of its own.
+ */
+inline std::unique_ptr<gpu::Device> create_testing_device(const std::string &backend,
+                                                          const std::filesystem::path &shader_cache_folder = {})
 {
   if (backend == "gl") {
     return gpu::create_gl_device({.is_debug = true});
@@ -52,27 +58,31 @@ inline std::unique_ptr<gpu::Device> create_testing_device(const std::string &bac
       fmt::print(stderr, "gnomon: {}\n", message);
     }
   };
-  return gpu::create_vulkan_device({.compile_spirv = shader_check::compile_spirv, .is_debug = true, .sink = sink});
+  return gpu::create_vulkan_device({.compile_spirv = shader_check::compile_spirv,
+                                    .is_debug = true,
+                                    .sink = sink,
+                                    .shader_cache_folder = shader_cache_folder});
 }
 
 /**
  * A headless device of \a backend that throws driver errors, also in release builds. If there is no driver, the test is
- * skipped with the reason, or fails if CI is set, and the function returns nullptr; the test (or SetUp) must then
- * return.
+ * skipped with the reason, or fails if CI is set, and the function returns nullptr. In SetUp, the test then does not
+ * run; elsewhere, it must return.
  */
-inline std::unique_ptr<gpu::Device> testing_device(const std::string &backend)
+inline std::unique_ptr<gpu::Device> testing_device(const std::string &backend,
+                                                   const std::filesystem::path &shader_cache_folder = {})
 {
   try {
-    return create_testing_device(backend);
+    return create_testing_device(backend, shader_cache_folder);
   }
   catch (const gpu::Error &error) {
     const char *ci = std::getenv("CI");
-    if (ci && *ci) {
-      ADD_FAILURE() << "CI is set and there is no GPU device: " << error.what();
-    }
-    else {
-      [&] { GTEST_SKIP() << error.what(); }();
-    }
+    [&] {
+      if (ci && *ci) {
+        FAIL() << "CI is set and there is no GPU device: " << error.what();
+      }
+      GTEST_SKIP() << error.what();
+    }();
     return nullptr;
   }
 }
@@ -89,23 +99,82 @@ inline std::unique_ptr<gpu::Device> testing_vulkan_device()
   return testing_device(testing_backend() == "swiftshader" ? "swiftshader" : "vulkan");
 }
 
-/** Base of test cases that need a device. Each test has a new one. */
+/** Base of test cases of the device itself. Each test has a new one. */
 class GpuDeviceTest : public testing::Test {
  protected:
   void SetUp() override
   {
     device = testing_device(testing_backend());
-    if (device) {
-      return;
-    }
-    // Repeats the result of testing_device, so that gtest does not run the body.
-    if (HasFailure()) {
-      FAIL();
-    }
-    GTEST_SKIP();
   }
 
   std::unique_ptr<gpu::Device> device;
+};
+
+/** The device that the tests of this process share. It ends with them, before the libraries of the driver do. */
+class SharedDevice : public testing::Environment {
+ public:
+  void TearDown() override
+  {
+    device.reset();
+  }
+
+  static inline std::unique_ptr<gpu::Device> device;
+};
+inline testing::Environment *const shared_device_end = testing::AddGlobalTestEnvironment(new SharedDevice);
+
+/**
+ * Base of test cases of what a device draws. They share one, so that programs are compiled once, as for the scenes of a
+ * host, and must leave no resource on it. After a test has failed, the next one has a new device.
+ */
+class SharedDeviceTest : public testing::Test {
+ protected:
+  ~SharedDeviceTest() override
+  {
+    if (device) {
+      EXPECT_EQ(device->live_resources(), std::vector<std::string>()) << "left by the test";
+    }
+  }
+
+  void SetUp() override
+  {
+    static int failed_count = 0;
+    const int failed_count_now = testing::UnitTest::GetInstance()->failed_test_count();
+    const bool has_failed = std::exchange(failed_count, failed_count_now) != failed_count_now;
+    // Passes with names beyond a number are not counted by name.
+    if (has_failed ||
+        (SharedDevice::device && SharedDevice::device->pass_counts().size() > gpu::Device::pass_name_max / 2)) {
+      SharedDevice::device.reset();
+    }
+    if (!SharedDevice::device) {
+      SharedDevice::device = testing_device(testing_backend(), GNOMON_TEST_SHADER_CACHE);
+    }
+    device = SharedDevice::device.get();
+    if (device) {
+      counts_before_ = device->pass_counts();
+    }
+  }
+
+  /** For tests of what a device has compiled or allocated. \pre no resource is on the device */
+  void use_new_device()
+  {
+    SharedDevice::device.reset();
+    SetUp();
+  }
+
+  /** How often a pass named \a pass has run since the test began. */
+  [[nodiscard]] std::uint64_t runs(const std::string &pass) const
+  {
+    const auto count = [&](const gpu::PassCounts &counts) {
+      const auto found = counts.find(pass);
+      return found == counts.end() ? 0 : found->second;
+    };
+    return count(device->pass_counts()) - count(counts_before_);
+  }
+
+  gpu::Device *device = nullptr;
+
+ private:
+  gpu::PassCounts counts_before_;
 };
 
 /** Base of test cases that need a device of OpenGL. Skipped if another backend is tested. */

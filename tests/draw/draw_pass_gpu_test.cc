@@ -14,13 +14,13 @@ namespace {
 
 using test::make_shader;
 
-class PassGpu : public test::GpuDeviceTest {
+class PassGpu : public test::SharedDeviceTest {
  protected:
   static constexpr int SIZE = 8;
 
   void SetUp() override
   {
-    GpuDeviceTest::SetUp();
+    SharedDeviceTest::SetUp();
     if (!device) {
       return;
     }

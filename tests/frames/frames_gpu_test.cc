@@ -17,7 +17,7 @@ using test::Bytes;
 using test::FailingAllocation;
 using test::FramesScene;
 using test::fresh_picture;
-using Frames = test::GpuDeviceTest;
+using Frames = test::SharedDeviceTest;
 /** With a driver of OpenGL that fails on demand. */
 using GlFrames = test::GlDeviceTest;
 

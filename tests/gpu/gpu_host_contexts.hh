@@ -22,16 +22,32 @@
 
 namespace gnomon::test {
 
-/** An OpenGL context of a host: current on this thread until it is destroyed. */
+/** An OpenGL context of a host: current on this thread until it is destroyed. A context of EGL that was, then is again.
+ */
 class HostContext {
  public:
-  HostContext() = default;
+  HostContext()
+  {
+    // GLX makes no context current beside one of EGL.
+    if (context_before_ != EGL_NO_CONTEXT) {
+      eglMakeCurrent(display_before_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
+  }
   HostContext(const HostContext &) = delete;
   HostContext &operator=(const HostContext &) = delete;
-  virtual ~HostContext() = default;
+  virtual ~HostContext()
+  {
+    if (context_before_ != EGL_NO_CONTEXT) {
+      eglMakeCurrent(display_before_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_before_);
+    }
+  }
   [[nodiscard]] virtual bool is_current() const = 0;
   /** Calls \a work in another context, which shares objects with this one. \return false: there is none. */
   [[nodiscard]] virtual bool in_shared_context(const std::function<void()> &work) = 0;
+
+ private:
+  EGLDisplay display_before_ = eglGetCurrentDisplay();
+  EGLContext context_before_ = eglGetCurrentContext();
 };
 
 class EglHostContext final : public HostContext {

@@ -12,7 +12,7 @@
 namespace gnomon::measure {
 namespace {
 
-using ErrorTimeTest = test::GpuDeviceTest;
+using ErrorTimeTest = test::SharedDeviceTest;
 
 /** A square over another, and a lamp with a size: shadows have penumbrae. */
 scene::Scene penumbra_scene()

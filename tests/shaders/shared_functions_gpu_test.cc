@@ -19,7 +19,7 @@ using verify::Sweep;
 using verify::sweeps;
 
 /** Evaluates a function on the device, with one pixel for each argument of a sweep. */
-class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterface<std::size_t> {
+class SharedFunctionGpu : public SharedDeviceTest, public testing::WithParamInterface<std::size_t> {
  protected:
   static constexpr int width_px = 256;
 
@@ -118,7 +118,7 @@ TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
   RecordProperty("epsilons_from_cpp", fmt::format("{:.3g}", difference));
 }
 
-class CoarseGridGpu : public GpuDeviceTest {};
+class CoarseGridGpu : public SharedDeviceTest {};
 
 /**
  * An orthographic view along -z, with pixels of 1 m, of a plane whose depth is 50 x. Interpolation has the place of a

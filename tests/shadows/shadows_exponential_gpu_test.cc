@@ -130,7 +130,7 @@ struct Judge {
   std::vector<std::vector<Point>> points;
 };
 
-class ExponentialShadows : public test::GpuDeviceTest {};
+class ExponentialShadows : public test::SharedDeviceTest {};
 
 TEST_F(ExponentialShadows, VariancesAreNearerToTheTruthWhereTheFilterIsWide)
 {

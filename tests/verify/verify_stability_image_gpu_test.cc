@@ -10,7 +10,7 @@
 namespace gnomon::verify {
 namespace {
 
-class StabilityImages : public test::GpuDeviceTest {};
+class StabilityImages : public test::SharedDeviceTest {};
 
 TEST_F(StabilityImages, HaveUniqueNames)
 {

@@ -17,11 +17,11 @@ namespace {
 
 constexpr glm::ivec2 size_px(40, 30);
 
-class ViewInterfaceGpu : public test::GpuDeviceTest {
+class ViewInterfaceGpu : public test::SharedDeviceTest {
  protected:
   void SetUp() override
   {
-    test::GpuDeviceTest::SetUp();
+    test::SharedDeviceTest::SetUp();
     if (device) {
       ImGui::CreateContext();
       ImGui::GetIO().DisplaySize = {float(size_px.x), float(size_px.y)};

@@ -17,7 +17,7 @@ constexpr glm::ivec2 adaptive_size_px(61, 43);
 constexpr int adaptive_samples = 16;
 
 /** Boxes on a ground that ends within the picture, under a point lamp and a sun. */
-class AdaptiveGpuTest : public test::GpuDeviceTest {
+class AdaptiveGpuTest : public test::SharedDeviceTest {
  protected:
   enum class Path { Deferred, Forward, Both };
 
@@ -56,12 +56,6 @@ class AdaptiveGpuTest : public test::GpuDeviceTest {
     test::Picture picture = renderer.picture(camera);
     EXPECT_EQ(picture.non_finite_count(), 0U);
     return picture;
-  }
-
-  [[nodiscard]] std::uint64_t runs(const std::string &pass) const
-  {
-    const auto found = device->pass_counts().find(pass);
-    return found == device->pass_counts().end() ? 0 : found->second;
   }
 
   scene::Scene scene;

@@ -15,7 +15,7 @@ using test::Picture;
 using test::Renderer;
 
 /** A white metal in the plane z = 0, with u along +X and up along +Y, seen at 60 degrees. */
-class AnisotropyGpuTest : public test::GpuDeviceTest {
+class AnisotropyGpuTest : public test::SharedDeviceTest {
  protected:
   AnisotropyGpuTest()
   {

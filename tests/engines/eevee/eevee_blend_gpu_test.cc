@@ -26,7 +26,7 @@ struct Pane {
   float alpha = 0.5F;
 };
 
-class BlendGpuTest : public test::GpuDeviceTest {
+class BlendGpuTest : public test::SharedDeviceTest {
  protected:
   scene::Handle<scene::Mesh> pane_mesh(const Pane &pane, bool is_double_sided = true)
   {

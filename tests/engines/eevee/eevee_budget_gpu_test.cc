@@ -56,7 +56,7 @@ struct Budgeted {
   BudgetedPicture picture;
 };
 
-class BudgetGpuTest : public test::GpuDeviceTest {
+class BudgetGpuTest : public test::SharedDeviceTest {
  protected:
   BudgetGpuTest()
   {

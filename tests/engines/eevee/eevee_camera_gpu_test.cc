@@ -13,7 +13,7 @@
 namespace gnomon::eevee {
 namespace {
 
-using CameraGpuTest = test::GpuDeviceTest;
+using CameraGpuTest = test::SharedDeviceTest;
 
 constexpr glm::ivec2 size_px(64, 48);
 

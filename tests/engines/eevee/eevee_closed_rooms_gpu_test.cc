@@ -258,7 +258,7 @@ struct Leaks {
 
 constexpr glm::ivec2 picture_size_px(48, 32);
 
-class ClosedRoomsGpuTest : public test::GpuDeviceTest {
+class ClosedRoomsGpuTest : public test::SharedDeviceTest {
  protected:
   /** Draws the rooms from \a first to \a end - 1. \a layer_px: size of maps and faces; 0: as `gnomon render`. */
   Leaks leaks_of(unsigned first, unsigned end, int layer_px) const

@@ -19,7 +19,7 @@ namespace {
 using test::Picture;
 using test::Renderer;
 
-class DebugViewGpuTest : public test::GpuDeviceTest {
+class DebugViewGpuTest : public test::SharedDeviceTest {
  protected:
   /** Facing +Z. */
   void add_square(const glm::vec3 &center, float half)

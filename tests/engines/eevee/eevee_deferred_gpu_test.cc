@@ -18,7 +18,7 @@ using test::Renderer;
 
 enum class Path { Deferred, Forward };
 
-class DeferredGpuTest : public test::GpuDeviceTest {
+class DeferredGpuTest : public test::SharedDeviceTest {
  protected:
   /** A plain material of \a color, and a white texture that takes it off deferred lighting. */
   scene::Handle<scene::Material> add_plain(const glm::vec3 &color, Path path, float specular = 0.0F)
@@ -91,11 +91,8 @@ class DeferredGpuTest : public test::GpuDeviceTest {
     Renderer renderer(*device, scene, size, settings);
     Picture picture = renderer.picture(camera);
     EXPECT_EQ(picture.non_finite_count(), 0U);
-    const auto steps = device->pass_counts();
-    const auto counted = steps.find("deferred_lit");
-    const std::uint64_t runs = counted == steps.end() ? 0 : counted->second;
-    EXPECT_EQ(runs > deferred_runs, is_deferred);
-    deferred_runs = runs;
+    EXPECT_EQ(runs("deferred_lit") > deferred_runs, is_deferred);
+    deferred_runs = runs("deferred_lit");
     return picture;
   }
 
@@ -205,7 +202,7 @@ TEST_F(DeferredGpuTest, GlassShowsThemAndTheWorldBehindThem)
     pictures.push_back(render(settings, path == Path::Deferred));
   }
   expect_equal(pictures[0], pictures[1]);
-  EXPECT_GT(device->pass_counts().at("transmission"), 1U) << "once for each picture";
+  EXPECT_GT(runs("transmission"), 1U) << "once for each picture";
 }
 
 TEST_F(DeferredGpuTest, PartsOfASampleAreThoseOfTheWholePicture)

@@ -20,7 +20,7 @@ constexpr glm::dvec3 radiance(1.0, 0.5, 0.25);
 constexpr double half_edge = 0.5;
 
 /** A white floor at z = 0 and ceiling at z = 2, and in the middle between them a square that emits light. */
-class EmissionTest : public test::GpuDeviceTest {
+class EmissionTest : public test::SharedDeviceTest {
  protected:
   EmissionTest()
   {

@@ -18,7 +18,7 @@ using test::Renderer;
 
 using std::numbers::pi;
 
-class EngineGpuTest : public test::GpuDeviceTest {
+class EngineGpuTest : public test::SharedDeviceTest {
  protected:
   /** A square of half size \a half at \a center, facing \a normal. */
   scene::Handle<scene::Node> add_square(const glm::vec3 &center, const glm::vec3 &normal, float half,

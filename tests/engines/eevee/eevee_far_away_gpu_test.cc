@@ -35,7 +35,7 @@ scene::Scene load(const std::string &name)
   return gltf::import_gltf(folder + name + ".glb");
 }
 
-class FarAway : public test::GpuDeviceTest {
+class FarAway : public test::SharedDeviceTest {
  protected:
   static constexpr glm::ivec2 size_px{160, 90};
 

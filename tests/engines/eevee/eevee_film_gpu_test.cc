@@ -37,7 +37,7 @@ glm::dvec3 radiance_at(const glm::dvec2 &place_px)
   return radiance;
 }
 
-class FilmGpuTest : public test::GpuDeviceTest {};
+class FilmGpuTest : public test::SharedDeviceTest {};
 
 TEST_F(FilmGpuTest, EachPixelAddsTheWeightedSamplesOfNinePixels)
 {

@@ -12,7 +12,7 @@ namespace {
 
 using test::Renderer;
 
-class LeftOutGpuTest : public test::GpuDeviceTest {
+class LeftOutGpuTest : public test::SharedDeviceTest {
  protected:
   LeftOutGpuTest()
   {

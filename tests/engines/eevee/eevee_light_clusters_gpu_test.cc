@@ -60,7 +60,7 @@ struct HallCase {
   bool is_perspective;
 };
 
-class ClustersGpuTest : public test::GpuDeviceTest {
+class ClustersGpuTest : public test::SharedDeviceTest {
  protected:
   Picture draw(const scene::Scene &scene, const Settings &settings, bool is_perspective = true)
   {

@@ -15,7 +15,7 @@ using test::Renderer;
 
 constexpr glm::vec3 line_color(0.25F, 0.5F, 0.75F);
 
-class LinesGpuTest : public test::GpuDeviceTest {
+class LinesGpuTest : public test::SharedDeviceTest {
  protected:
   scene::Handle<scene::Material> add_material(bool is_unlit)
   {

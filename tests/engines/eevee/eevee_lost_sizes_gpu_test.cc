@@ -115,7 +115,7 @@ std::vector<Way> ways()
   return ways;
 }
 
-class LostSizesGpu : public test::GpuDeviceTest {
+class LostSizesGpu : public test::SharedDeviceTest {
  protected:
   static Settings settings()
   {

@@ -22,7 +22,7 @@ using Bytes = std::vector<std::uint8_t>;
 using std::numbers::pi;
 
 /** A white Lambertian square that fills the view, and a sun that lights it with radiance 1. */
-class MaterialGpuTest : public test::GpuDeviceTest {
+class MaterialGpuTest : public test::SharedDeviceTest {
  protected:
   MaterialGpuTest()
   {

@@ -17,7 +17,7 @@
 namespace gnomon::eevee {
 namespace {
 
-class SlowMemoryGpuTest : public test::GpuDeviceTest {};
+class SlowMemoryGpuTest : public test::SharedDeviceTest {};
 
 const std::string spots_file = GNOMON_SOURCE "/examples/scenes/spots.glb";
 
@@ -86,7 +86,7 @@ TEST_F(SlowMemoryGpuTest, StaysFlatOver5000FramesWithEdits)
   printf("5000 frames: %.2f MiB, %.2f MiB more than after 1500\n", resident_mib(), resident_mib() - resident);
 }
 
-using MemoryGpuTest = test::GpuDeviceTest;
+using MemoryGpuTest = test::SharedDeviceTest;
 
 TEST_F(MemoryGpuTest, EachTurnOfScenesLeavesAsMuchAllocated)
 {

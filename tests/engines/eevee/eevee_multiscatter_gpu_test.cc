@@ -16,7 +16,7 @@ namespace {
 using std::numbers::pi;
 
 /** A square in the plane z = 0, and a material that multiple scattering changes. */
-class MultiscatterGpuTest : public test::GpuDeviceTest {
+class MultiscatterGpuTest : public test::SharedDeviceTest {
  protected:
   MultiscatterGpuTest()
   {

@@ -13,7 +13,7 @@ using test::CubeDepths;
 using test::EsmStage;
 using test::Receiver;
 
-class OctahedralGpu : public test::GpuDeviceTest {};
+class OctahedralGpu : public test::SharedDeviceTest {};
 
 glm::dvec3 texel_direction(glm::ivec2 texel, int size)
 {

@@ -36,7 +36,7 @@ Radiances sum_of(const Radiances &a, const Radiances &b, float factor = 1.0F)
   return sum;
 }
 
-class PictureLayersGpuTest : public test::GpuDeviceTest {
+class PictureLayersGpuTest : public test::SharedDeviceTest {
  protected:
   PictureLayersGpuTest()
   {

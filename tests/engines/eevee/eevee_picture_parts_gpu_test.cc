@@ -17,7 +17,7 @@ constexpr glm::ivec2 whole_size_px(40, 30);
 constexpr int margin_px = 12;
 constexpr double vertical_angle = 0.7;
 
-class PicturePartsTest : public test::GpuDeviceTest {
+class PicturePartsTest : public test::SharedDeviceTest {
  protected:
   PicturePartsTest()
   {

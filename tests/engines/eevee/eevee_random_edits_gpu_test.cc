@@ -177,7 +177,7 @@ class RandomEditor {
   std::vector<Handle<scene::Node>> lamps_;
 };
 
-class RandomEdits : public test::GpuDeviceTest {
+class RandomEdits : public test::SharedDeviceTest {
  protected:
   static Settings settings()
   {

@@ -24,7 +24,7 @@ float blended(const Picture &picture, const glm::vec2 &position_px)
   return glm::mix(glm::mix(at(0, 0), at(1, 0), share.x), glm::mix(at(0, 1), at(1, 1), share.x), share.y);
 }
 
-class ShadowCrawlGpuTest : public test::GpuDeviceTest {
+class ShadowCrawlGpuTest : public test::SharedDeviceTest {
  protected:
   ShadowCrawlGpuTest()
   {

@@ -30,7 +30,7 @@ void PrintTo(const CropLamp &lamp, std::ostream *stream)
 }
 
 /** Boxes on a ground, of which cameras see a part. */
-class ShadowCropGpuTest : public test::GpuDeviceTest, public testing::WithParamInterface<CropLamp> {
+class ShadowCropGpuTest : public test::SharedDeviceTest, public testing::WithParamInterface<CropLamp> {
  protected:
   ShadowCropGpuTest()
   {

@@ -10,7 +10,7 @@
 namespace gnomon::eevee {
 namespace {
 
-using ShadowEditsGpuTest = test::GpuDeviceTest;
+using ShadowEditsGpuTest = test::SharedDeviceTest;
 
 TEST_F(ShadowEditsGpuTest, LayersKeepTheirTexelsWhereTheirArrayGrowsAndShrinks)
 {

@@ -17,7 +17,7 @@ namespace {
 using test::Picture;
 using test::Renderer;
 
-class ShadowLayersGpuTest : public test::GpuDeviceTest {
+class ShadowLayersGpuTest : public test::SharedDeviceTest {
  protected:
   /** The ways to draw layers that the device has. */
   [[nodiscard]] std::vector<LayerPass> layer_passes() const

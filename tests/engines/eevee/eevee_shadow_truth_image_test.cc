@@ -53,7 +53,7 @@ enum class Contacts {
   CountedWithoutJoints,
 };
 
-class ShadowTruth : public test::GpuDeviceTest {
+class ShadowTruth : public test::SharedDeviceTest {
  protected:
   Truth compare(const scene::Scene &scene, const scene::PlacedCamera &camera, const ShadowSettings &shadow,
                 glm::ivec2 size_px = {320, 320}, Contacts contacts = Contacts::NotCounted)

@@ -142,7 +142,7 @@ class LiveRenderers {
   TwoViewports two_;
 };
 
-class SingleEditsGpu : public test::GpuDeviceTest {};
+class SingleEditsGpu : public test::SharedDeviceTest {};
 
 TEST_F(SingleEditsGpu, OfEachPropertyAndThingGiveThePictureOfANewRenderer)
 {

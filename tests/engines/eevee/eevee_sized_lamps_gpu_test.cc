@@ -129,7 +129,7 @@ std::vector<PlacedLight> lamps_of_each_kind(double size)
   return lights;
 }
 
-class LampLightTest : public test::GpuDeviceTest {
+class LampLightTest : public test::SharedDeviceTest {
  protected:
   LampLightTest()
   {
@@ -350,7 +350,7 @@ void PrintTo(const PenumbraLamp &lamp, std::ostream *stream)
  * a case is that of the widths of penumbra and lamp, which by similar triangles is that of the distances from the edge
  * to the ground and to the lamp. Of a sun, it is that of the penumbra's width and the height of the edge.
  */
-class PenumbraTest : public test::GpuDeviceTest, public testing::WithParamInterface<PenumbraLamp> {
+class PenumbraTest : public test::SharedDeviceTest, public testing::WithParamInterface<PenumbraLamp> {
  protected:
   PenumbraTest()
   {
@@ -476,7 +476,7 @@ TEST_P(PenumbraTest, OfOneFrameIsAsWideAsSimilarTrianglesSay)
   }
 }
 
-class PenumbraSceneTest : public test::GpuDeviceTest {};
+class PenumbraSceneTest : public test::SharedDeviceTest {};
 
 TEST_F(PenumbraSceneTest, CastersBehindTheReceiverDoNotDarkenIt)
 {
@@ -575,7 +575,7 @@ TEST_F(PenumbraSceneTest, OfABallIsLikeThatOfManySamples)
 }
 
 /** Surfaces that nothing hides from a lamp with a size, in pictures of one sample. */
-class LitPenumbraTest : public test::GpuDeviceTest {
+class LitPenumbraTest : public test::SharedDeviceTest {
  protected:
   /** The least quotient of a pixel with and without shadows. The truth is 1. */
   float least_visibility(const scene::PlacedCamera &camera, glm::ivec2 size_px)

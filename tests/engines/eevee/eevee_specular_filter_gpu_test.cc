@@ -18,7 +18,7 @@ using test::Picture;
 using test::Renderer;
 
 /** A smooth metal in the plane z = 0, 16 pixels wide, seen from above under a sun from nearly there. */
-class SpecularFilterGpuTest : public test::GpuDeviceTest {
+class SpecularFilterGpuTest : public test::SharedDeviceTest {
  protected:
   SpecularFilterGpuTest()
   {

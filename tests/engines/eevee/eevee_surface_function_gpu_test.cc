@@ -35,7 +35,7 @@ double difference_of(const Picture &a, const Picture &b)
   return largest;
 }
 
-class SurfaceFunctionGpuTest : public test::GpuDeviceTest {
+class SurfaceFunctionGpuTest : public test::SharedDeviceTest {
  protected:
   scene::Handle<scene::Material> add_material(const std::string &text, const glm::vec3 &albedo = glm::vec3(1.0F))
   {

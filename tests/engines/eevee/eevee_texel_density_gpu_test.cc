@@ -12,7 +12,7 @@ namespace {
 
 using test::Renderer;
 
-class TexelDensityGpuTest : public test::GpuDeviceTest {
+class TexelDensityGpuTest : public test::SharedDeviceTest {
  protected:
   static constexpr int edge_px = 48;
   static constexpr int map_px = 64;

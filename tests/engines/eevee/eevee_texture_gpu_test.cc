@@ -18,7 +18,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 using std::numbers::pi;
 
-class TextureGpuTest : public test::GpuDeviceTest {
+class TextureGpuTest : public test::SharedDeviceTest {
  protected:
   /** A square of half size 1 with a texture. \return its mesh. */
   scene::Handle<scene::Mesh> add_textured(std::uint32_t width, const Bytes &texels,

@@ -25,7 +25,7 @@ using test::Renderer;
 constexpr glm::ivec2 square_size_px(24, 24);
 
 /** An unlit square behind a plate that transmits light, both across the view. */
-class TransmissionGpuTest : public test::GpuDeviceTest {
+class TransmissionGpuTest : public test::SharedDeviceTest {
  protected:
   TransmissionGpuTest()
   {

@@ -17,7 +17,7 @@ namespace gnomon::eevee {
 namespace {
 
 /** A square in the plane z = 0 that fills the view, and a world. */
-class WorldGpuTest : public test::GpuDeviceTest {
+class WorldGpuTest : public test::SharedDeviceTest {
  protected:
   WorldGpuTest()
   {

@@ -19,11 +19,11 @@ namespace {
 constexpr glm::ivec2 size_px{60, 40};
 constexpr glm::vec4 line_color(1.0F, 0.5F, 0.0F, 1.0F);
 
-class OverlayGpuTest : public test::GpuDeviceTest {
+class OverlayGpuTest : public test::SharedDeviceTest {
  protected:
   void SetUp() override
   {
-    GpuDeviceTest::SetUp();
+    SharedDeviceTest::SetUp();
     if (device) {
       render_scene.emplace(*device, scene);
       overlay.emplace(*render_scene);
@@ -662,6 +662,7 @@ TEST_F(OverlayGpuTest, PixelsOutsideOfThePictureHaveNothingAndEditsWithoutAnUpda
 
 TEST_F(OverlayGpuTest, NothingIsMadeBeforeAPixelCanSeeAnObject)
 {
+  use_new_device();
   const auto node = add_square(0, test::add_material(scene, glm::vec3(0.5F)), 0.1);
   EXPECT_FALSE(pick(0, 0));
   outline({});
@@ -777,6 +778,7 @@ TEST_F(OverlayGpuTest, ALineThatBeginsBehindTheEyeIsDrawnFromTheNearPlaneOn)
 
 TEST_F(OverlayGpuTest, NothingIsMadeWithoutLinesAndLinesOnTopDrawNoObject)
 {
+  use_new_device();
   add_square(0, test::add_material(scene, glm::vec3(0.5F)));
   // Drawing without lines creates nothing.
   lines({});
@@ -784,12 +786,12 @@ TEST_F(OverlayGpuTest, NothingIsMadeWithoutLinesAndLinesOnTopDrawNoObject)
   EXPECT_EQ(device->memory_bytes(), 0U);
   lines({{{-1, 0, 0}, {1, 0, 0}, line_color, 1.0F, true}});
   EXPECT_EQ(device->counters().shaders_made, 1U);
-  EXPECT_FALSE(device->pass_counts().contains("overlay objects"));
+  EXPECT_EQ(runs("overlay objects"), 0U);
   // Objects are drawn for the first picture alone.
   for (int i = 0; i < 3; i++) {
     lines({{{-1, 0, 0}, {1, 0, 0}}});
   }
-  EXPECT_EQ(device->pass_counts().at("overlay objects"), 1U);
+  EXPECT_EQ(runs("overlay objects"), 1U);
 }
 
 TEST_F(OverlayGpuTest, LinesThatAreNotFiniteOrHaveNoWidthAreNamed)

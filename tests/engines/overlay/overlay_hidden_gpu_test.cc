@@ -21,7 +21,7 @@ namespace {
 using Nodes = std::vector<scene::Handle<scene::Node>>;
 
 /** A floor, and before it a box with a child, a square that blends and a box that masks, lit from above. */
-class HiddenNodesTest : public test::GpuDeviceTest {
+class HiddenNodesTest : public test::SharedDeviceTest {
  protected:
   static constexpr glm::ivec2 size_px{60, 40};
 
@@ -316,6 +316,7 @@ TEST_F(ClipPlanesTest, PlanesAroundARectangleLeaveWhatItShows)
 
 TEST_F(ClipPlanesTest, EnginesAndPickingShowTheSamePartsOfSurfaces)
 {
+  use_new_device();
   scene.edit(glass, [](scene::Node &one) { one.is_visible = false; });
   const std::vector<glm::dvec4> planes = {{0.8, 0, -0.6, 0.9}, {0, -1, 0, 0.8}};
   // Above all planes by more than rounding; below one; between.

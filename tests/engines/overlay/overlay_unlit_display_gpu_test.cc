@@ -17,7 +17,7 @@ namespace {
 using Pixels = std::vector<glm::vec4>;
 
 /** Two boxes behind each other. */
-class WireframeTest : public test::GpuDeviceTest {
+class WireframeTest : public test::SharedDeviceTest {
  protected:
   static constexpr glm::ivec2 size_px{80, 60};
   /** Each pixel whose middle is at most so far from an edge is drawn: half a pixel along an axis, for any slope. */
@@ -25,7 +25,7 @@ class WireframeTest : public test::GpuDeviceTest {
 
   void SetUp() override
   {
-    test::GpuDeviceTest::SetUp();
+    test::SharedDeviceTest::SetUp();
     if (!device) {
       return;
     }

@@ -15,11 +15,11 @@ namespace {
 
 constexpr glm::vec3 ground_color(0.75F, 0.5F, 0.25F);
 
-class UnlitGpuTest : public test::GpuDeviceTest {
+class UnlitGpuTest : public test::SharedDeviceTest {
  protected:
   void SetUp() override
   {
-    GpuDeviceTest::SetUp();
+    SharedDeviceTest::SetUp();
     if (device) {
       render_scene.emplace(*device, scene);
       viewport.emplace(*device, size_px);
