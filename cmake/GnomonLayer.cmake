@@ -63,6 +63,11 @@ function(gnomon_compile_settings TARGET)
       target_compile_options(${TARGET} PRIVATE -fsanitize=${GNOMON_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     endif()
     target_link_options(${TARGET} PUBLIC -fsanitize=${GNOMON_SANITIZE})
+    # Tests start the program hundreds of times. A position-independent one has two million relocations with these sanitizers, a quarter
+    # of the time of such a start.
+    if(TYPE STREQUAL "EXECUTABLE")
+      target_link_options(${TARGET} PRIVATE -no-pie)
+    endif()
   endif()
 endfunction()
 
