@@ -237,8 +237,26 @@ CenterLight center_light(LightData light, int index, const int lights, Surface s
 #  include "eevee/eevee_lamp_highlight_lib.glsl"
 #endif
 
-/** Radiance towards the viewer from the light \a index, shaded as a point at its centre, W/(sr m²). */
-vec3 point_radiance(int index, const int lights, MaterialData material, Surface surface)
+#ifdef HAS_SURFACE_POINTS
+/**
+ * The light of emissive surfaces in one sample. The sum over all points has no shadows. The points that have shadows give the part of it
+ * that arrives: with too few points the places of the points show, and lookups of shadows take most of the time.
+ */
+struct SurfaceLight {
+  /** Radiance towards the viewer of all points without shadows, W/(sr m²). */
+  vec3 radiance;
+  /** Of those points that have shadows: without and with them. */
+  float shadowless;
+  float arriving;
+};
+SurfaceLight surface_light;
+#endif
+
+/**
+ * Radiance towards the viewer from the light \a index, shaded as a point at its centre, W/(sr m²). \a has_shadow: false for points that
+ * never have one. With HAS_SURFACE_POINTS, points of emissive surfaces are added to surface_light instead.
+ */
+vec3 point_radiance(int index, const int lights, const bool has_shadow, MaterialData material, Surface surface)
 {
   LightData light = light_at(index);
   if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_HEMI) {
@@ -269,7 +287,12 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, lights, surface, center.to_light, true);
+  float visibility = has_shadow ? light_visibility(light, lights, surface, center.to_light, true) : 1.0;
+#ifdef HAS_SURFACE_POINTS
+  bool is_surface = lights != LIGHTS_WITH_MAPS && light.kind == LIGHT_SURFACE;
+  float surface_visibility = visibility;
+  visibility = is_surface ? 1.0 : visibility;
+#endif
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
@@ -341,6 +364,15 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
 #ifdef USE_LAMP_HIGHLIGHT
   radiance += LAMP_HIGHLIGHTS != 0 ? visibility * lamp_radiance : vec3(0.0);
 #endif
+#ifdef HAS_SURFACE_POINTS
+  if (is_surface) {
+    surface_light.radiance += has_shadow ? vec3(0.0) : radiance;
+    float sum = has_shadow ? radiance.r + radiance.g + radiance.b : 0.0;
+    surface_light.shadowless += sum;
+    surface_light.arriving += sum * surface_visibility;
+    return vec3(0.0);
+  }
+#endif
   return radiance;
 }
 
@@ -373,12 +405,34 @@ vec3 lights_radiance(int first, int end, const int lights, MaterialData material
       else
 #endif
       {
-        sum += point_radiance(index, lights, material, surface);
+        sum += point_radiance(index, lights, true, material, surface);
       }
     } while (++i < end);
   }
   return sum;
 }
+
+#ifdef HAS_SURFACE_POINTS
+/** Radiance towards the viewer from points of emissive surfaces, W/(sr m²), after the loops over the other lights. */
+vec3 surface_points_radiance(MaterialData material, Surface surface)
+{
+#ifdef USE_LIGHT_CLUSTERS
+  int i = clusters.first_surface_point;
+  int end = i + clusters.surface_point_count;
+#else
+  int i = light_data.light_count;
+  int end = min(i + light_data.surface_point_count, LIGHT_MAX);
+#endif
+  // Where nothing arrives, the others need no light.
+  if (i < end && surface_light.arriving > 0.0) {
+    // The test is at the end as in lights_radiance.
+    do {
+      point_radiance(i, LIGHTS_WITH_CUBES, false, material, surface);
+    } while (++i < end);
+  }
+  return surface_light.radiance * (surface_light.arriving / max(surface_light.shadowless, 1e-30));
+}
+#endif
 
 /** Radiance towards the viewer from all lights, W/(sr m²). */
 vec3 direct_light(MaterialData material, Surface surface)
@@ -407,10 +461,17 @@ vec3 direct_light(MaterialData material, Surface surface)
   int count = branch_value(min(light_data.light_count, LIGHT_MAX));
   int cube_count = min(light_data.cube_light_count, count);
 #endif
+#ifdef HAS_SURFACE_POINTS
+  surface_light = SurfaceLight(vec3(0.0), 0.0, 0.0);
+#endif
 #if defined(USE_SHADOW_CUBE) && defined(USE_SHADOW_MAP)
   sum += lights_radiance(0, cube_count, LIGHTS_WITH_CUBES, material, surface);
-  return sum + lights_radiance(cube_count, count, LIGHTS_WITH_MAPS, material, surface);
+  sum += lights_radiance(cube_count, count, LIGHTS_WITH_MAPS, material, surface);
 #else
-  return sum + lights_radiance(0, count, LIGHTS_ALL, material, surface);
+  sum += lights_radiance(0, count, LIGHTS_ALL, material, surface);
 #endif
+#ifdef HAS_SURFACE_POINTS
+  sum += surface_points_radiance(material, surface);
+#endif
+  return sum;
 }

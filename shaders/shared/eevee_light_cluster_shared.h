@@ -32,9 +32,10 @@ struct LightClusterBlock {
   int cube_everywhere_count;
   /** The same for the lights from cube_light_count on. */
   int other_everywhere_count;
+  /** LightBlock::surface_point_count, and the index of the first of them. They are in no list. */
+  int surface_point_count;
+  int first_surface_point;
   int _pad0;
-  int _pad1;
-  int _pad2;
 };
 SHARED_ASSERT_SIZE(LightClusterBlock, 112)
 

@@ -70,11 +70,13 @@ SHARED_ASSERT_SIZE(LightData, 64)
 #define LIGHT_MAX 255
 
 struct LightBlock {
+  /** Without surface_point_count. */
   int light_count;
   /** Number of lights whose shadow may be a cube: points, areas and wide spots. They are the first in `lights`. */
   int cube_light_count;
+  /** Number of points of emissive surfaces without shadows. They follow the other lights, and only one sample has them. */
+  int surface_point_count;
   int _pad0;
-  int _pad1;
   LightData lights[LIGHT_MAX];
 };
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)

@@ -89,8 +89,8 @@ constexpr auto layer_fields = std::to_array<Field>({
 constexpr auto light_fields = std::to_array<Field>({
     FIELD("light_data.", LightBlock, light_count),
     FIELD("light_data.", LightBlock, cube_light_count),
+    FIELD("light_data.", LightBlock, surface_point_count),
     FIELD("light_data.", LightBlock, _pad0),
-    FIELD("light_data.", LightBlock, _pad1),
     FIELD("light_data.", LightBlock, lights[0].position_ws),
     FIELD("light_data.", LightBlock, lights[0].kind),
     FIELD("light_data.", LightBlock, lights[0].color),
@@ -123,9 +123,9 @@ constexpr auto light_cluster_fields = std::to_array<Field>({
     FIELD("clusters.", LightClusterBlock, cube_light_count),
     FIELD("clusters.", LightClusterBlock, cube_everywhere_count),
     FIELD("clusters.", LightClusterBlock, other_everywhere_count),
+    FIELD("clusters.", LightClusterBlock, surface_point_count),
+    FIELD("clusters.", LightClusterBlock, first_surface_point),
     FIELD("clusters.", LightClusterBlock, _pad0),
-    FIELD("clusters.", LightClusterBlock, _pad1),
-    FIELD("clusters.", LightClusterBlock, _pad2),
 });
 
 constexpr auto world_fields = std::to_array<Field>({

@@ -47,19 +47,35 @@ void SceneEmission::update(const render_scene::RenderScene &scene, bool is_used)
   revision_ += had_surfaces || surfaces_ ? 1 : 0;
 }
 
+/** \a index: of the point. */
+static scene::PlacedLamp emission_lamp(int index)
+{
+  scene::PlacedLamp lamp;
+  lamp.name = fmt::format("emissive surfaces {}", index + 1);
+  lamp.kind = scene::LampKind::Point;
+  lamp.node.index = emission_node_first + std::uint32_t(index);
+  return lamp;
+}
+
 std::vector<scene::PlacedLamp> emission_lamps(int count, const scene::Bounds &bounds_ws)
 {
   std::vector<scene::PlacedLamp> lamps;
   for (int i = 0; i < count; i++) {
-    scene::PlacedLamp &lamp = lamps.emplace_back();
-    lamp.name = fmt::format("emissive surfaces {}", i + 1);
-    lamp.kind = scene::LampKind::Point;
+    scene::PlacedLamp &lamp = lamps.emplace_back(emission_lamp(i));
     // Any radius, so that has_extent is true and LampPoints samples the lamp.
     lamp.radius = 1.0F;
     lamp.shadow.kind = scene::ShadowKind::Hard;
     lamp.shadow.size = shadow_size_px;
     lamp.shadow.clip_start = std::max(clear_share * bounds_ws.radius(), 1e-6F);
-    lamp.node.index = emission_node_first + std::uint32_t(i);
+  }
+  return lamps;
+}
+
+std::vector<scene::PlacedLamp> further_emission_lamps(int first, int count)
+{
+  std::vector<scene::PlacedLamp> lamps;
+  for (int i = 0; i < count; i++) {
+    lamps.emplace_back(emission_lamp(first + i)).shadow.kind = scene::ShadowKind::None;
   }
   return lamps;
 }

@@ -50,4 +50,16 @@ class SceneEmission {
  */
 [[nodiscard]] std::vector<scene::PlacedLamp> emission_lamps(int count, const scene::Bounds &bounds_ws);
 
+/**
+ * Points of emissive surfaces in one sample, for each that has a shadow. With fewer, the places of the points show;
+ * more change little: decision 0029.
+ */
+inline constexpr int points_per_shadow = 8;
+
+/**
+ * \a count lamps for the further points of a picture of one sample, which have no shadow. \a first: number of the
+ * emission_lamps.
+ */
+[[nodiscard]] std::vector<scene::PlacedLamp> further_emission_lamps(int first, int count);
+
 }  // namespace gnomon::eevee

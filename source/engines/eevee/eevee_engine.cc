@@ -47,7 +47,10 @@ Settings offline_settings(int sample_count)
 }
 
 Engine::Engine(render_scene::RenderScene &scene, const Settings &settings)
-    : scene_(scene), settings_(settings), shaders_(std::make_shared<ShaderCache>())
+    : scene_(scene),
+      settings_(settings),
+      shaders_(std::make_shared<ShaderCache>()),
+      emission_(std::make_shared<SceneEmission>())
 {
 }
 
@@ -89,7 +92,7 @@ void Engine::init(draw::Viewport &viewport)
 void Engine::sync_lights(SharedData &shared)
 {
   shared.world.sync_occlusion(scene_, settings_);
-  if (shared.lights.sync(scene_, settings_, settings_revision_, shaders_->revision(), shared.shadows)) {
+  if (shared.lights.sync(scene_, settings_, settings_revision_, shaders_->revision(), *emission_, shared.shadows)) {
     shared.shadow_pass.forget_casters();
   }
 }

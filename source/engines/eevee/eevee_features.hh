@@ -73,6 +73,8 @@ enum class Feature : std::uint32_t {
   SurfaceInLayers = 1U << 23,
   /** Lines or points are drawn. Their programs are without CoarseGrid, which discards what has no area. */
   LinesOrPoints = 1U << 24,
+  /** There are Lamps::surface_point_count. A constant of programs with lamps at a distance. */
+  SurfacePoints = 1U << 25,
 };
 
 GNOMON_MASK_OPERATORS(Feature)
@@ -82,7 +84,7 @@ inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap |
 
 /** Constants of programs. They select no variant. \see constants_of */
 inline constexpr Feature program_constants = Feature::LampHighlights | Feature::WorldOcclusion | Feature::CoarseGrid |
-                                             Feature::ClipPlanes | Feature::SurfaceInLayers;
+                                             Feature::ClipPlanes | Feature::SurfaceInLayers | Feature::SurfacePoints;
 
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)

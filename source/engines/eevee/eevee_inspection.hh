@@ -65,6 +65,8 @@ struct Report {
   /** The node "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws of the last picture. */
   FrameNode tree;
   ShadowCounters shadow_counters;
+  /** Increased when the table of emissive surfaces changes, which engines of one scene share. */
+  std::uint64_t emission_revision = 0;
   /** Number of recordings of the passes since the first sync of the viewport. */
   std::uint64_t pass_recordings = 0;
 };

@@ -134,9 +134,14 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
   }
 }
 
+std::uint32_t lamp_stream(std::uint32_t seed, std::size_t lamp)
+{
+  return shared::mixed_bits(seed) + std::uint32_t(lamp);
+}
+
 std::uint32_t LampPoints::stream_of(const Sized &sized, std::uint32_t seed)
 {
-  return shared::mixed_bits(seed) + sized.stream - sized.direction;
+  return lamp_stream(seed, sized.index - sized.direction);
 }
 
 LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
@@ -185,7 +190,7 @@ void LampPoints::add_sun_points(const Sized &sized, std::uint32_t index, std::ui
     sampled.first_sun = sized.light;
   }
   // The complement is a stream of no lamp.
-  const std::uint32_t stream = shared::mixed_bits(seed) + ~sized.stream;
+  const std::uint32_t stream = lamp_stream(seed, ~sized.index);
   for (std::uint32_t i = 0; i < WORLD_SUN_POINTS; i++) {
     const render_scene::WorldDirection direction =
         sized.world->at(glm::dvec2(sobol_point(index * WORLD_SUN_POINTS + i, stream)));
@@ -215,7 +220,7 @@ SampledLampPoints LampPoints::sample(std::uint32_t index, std::uint32_t seed, Sa
       }
       continue;
     }
-    const glm::vec3 place = sobol_point(index, shared::mixed_bits(seed) + sized.stream);
+    const glm::vec3 place = sobol_point(index, stream_of(sized, seed));
     // The mean of the unit vectors in a cone of half angle a has the length (1 + cos a) / 2.
     const double weight =
         sized.lamp.kind == scene::LampKind::Sun ? 2.0 / (1.0 + std::cos(half_angle(sized.lamp))) : 1.0;

@@ -61,6 +61,9 @@ struct SampledLampPoints {
  */
 [[nodiscard]] glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const glm::vec3 &toward_ws);
 
+/** Selects the sequence of points of the lamp number \a lamp; for lamps that share a sequence, of the first of them. */
+[[nodiscard]] std::uint32_t lamp_stream(std::uint32_t seed, std::size_t lamp);
+
 /**
  * A point of emissive surfaces. \a index: of the point among those of all samples, of which each has \a count.
  * \a stream: selects the sequence of points. \a sample_count: samples for each pixel of the picture.
@@ -103,8 +106,8 @@ class LampPoints {
  private:
   struct Sized {
     int light = 0;
-    /** Selects the sequence of points: the index of the lamp in `placed`. */
-    std::uint32_t stream = 0;
+    /** Index of the lamp in `placed`. */
+    std::uint32_t index = 0;
     scene::PlacedLamp lamp;
     /** Values of LightData for the lamp's centre. */
     glm::vec3 color{0.0F};

@@ -211,6 +211,18 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading,
   return lamps;
 }
 
+void add_surface_points(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t first)
+{
+  for (std::size_t i = first; i < placed.size(); i++) {
+    lamps.lamp_index.push_back(std::uint32_t(i));
+    lamps.lights.push_back(light_data(placed[i]));
+    lamps.shapes.push_back(light_shape(placed[i], LampShading::Whole));
+    lamps.reaches.push_back(light_reach(placed[i], LampShading::Whole));
+    lamps.features = lamps.features | Feature::SurfacePoints;
+    lamps.surface_point_count++;
+  }
+}
+
 void set_highlights(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t end, int sample_count,
                     const scene::Bounds &receivers_ws)
 {

@@ -75,6 +75,8 @@ struct Lamps {
   int cube_light_count = 0;
   int cube_everywhere_count = 0;
   int other_everywhere_count = 0;
+  /** The last lights are these points. \see add_surface_points */
+  int surface_point_count = 0;
   /** For each light, the index of its lamp in the argument of make_lamps. */
   std::vector<std::uint32_t> lamp_index;
   /** Features that the lamps need, without those of shadows. */
@@ -93,7 +95,7 @@ struct Lamps {
   /** Number of lights that do not reach everywhere. */
   [[nodiscard]] int local_count() const
   {
-    return light_count() - cube_everywhere_count - other_everywhere_count;
+    return light_count() - surface_point_count - cube_everywhere_count - other_everywhere_count;
   }
 };
 
@@ -111,6 +113,12 @@ struct Lamps {
  */
 void set_highlights(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t end, int sample_count,
                     const scene::Bounds &receivers_ws);
+
+/**
+ * Append lights for those of \a placed from \a first on, which are points of emissive surfaces without shadows.
+ * Programs visit them in a loop of their own, which has no lookups of shadows. \see eevee_light_lib.glsl
+ */
+void add_surface_points(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t first);
 
 /** Set LightData::kind of the lights of lamps whose index is at least \a first and below \a end. */
 void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind);

@@ -258,6 +258,8 @@ void LightClusters::build(const Lamps &lamps, const draw::View &view, glm::ivec2
   block_.cube_light_count = lamps.cube_light_count;
   block_.cube_everywhere_count = lamps.cube_everywhere_count;
   block_.other_everywhere_count = lamps.other_everywhere_count;
+  block_.surface_point_count = lamps.surface_point_count;
+  block_.first_surface_point = lamps.light_count() - lamps.surface_point_count;
   const auto parts = [](int size, int most) { return std::clamp(size / column_px_min, 1, most); };
   const int rows_max = std::max(column_count_max * size_px.y / size_px.x, 1);
   block_.column_count = parts(size_px.x, column_count_max);

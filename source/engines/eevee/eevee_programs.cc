@@ -228,6 +228,7 @@ Feature constants_of(const ShaderDeclaration &declaration, Feature variant)
   const Feature lighting =
       (has(variant, Feature::LampShape) ? Feature::LampHighlights : Feature::None) |
       (has(variant, Feature::World) ? Feature::WorldOcclusion : Feature::None) |
+      (has(variant, Feature::Punctual) ? Feature::SurfacePoints : Feature::None) |
       (has(variant, Feature::ShadowCube | Feature::ShadowMap) ? Feature::SurfaceInLayers : Feature::None);
   switch (declaration.id) {
     case ShaderId::GBuffer:
@@ -335,6 +336,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   }
   if (has(features, Feature::SurfaceInLayers)) {
     desc.defines.emplace_back("HAS_SURFACE_IN_LAYERS");
+  }
+  if (has(features, Feature::SurfacePoints)) {
+    desc.defines.emplace_back("HAS_SURFACE_POINTS");
   }
   if (has(features, Feature::CoarseGrid)) {
     desc.defines.emplace_back("HAS_COARSE_GRID");

@@ -337,11 +337,13 @@ std::vector<FramePart> frame_parts(const ReportSource &source)
                                         : nothing_seen);
   part("light_texture", bool(shared.lights.texture()), fmt::format("{} lights", light_count),
        has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
-  const bool has_emission = shared.lights.emission().surfaces() != nullptr;
-  part("light of emissive surfaces", has_emission,
-       has_emission ? fmt::format("{} points in each sample, chosen from {} patches", settings.emissive_points(),
-                                  shared.lights.emission().surfaces()->patch_count())
-                    : "",
+  const std::shared_ptr<const scene::EmissiveSurfaces> &emission = shared.lights.plan().emission;
+  const int further = shared.lights.plan().lamps.surface_point_count;
+  part("light of emissive surfaces", emission != nullptr,
+       emission
+           ? fmt::format("{} points in each sample{}, chosen from {} patches", settings.emissive_points(),
+                         further > 0 ? fmt::format(" and {} without shadows", further) : "", emission->patch_count())
+           : "",
        settings.emissive_points() > 0  ? "no material emits light"
        : settings.emissive_point_count ? "not asked for"
                                        : "a picture of one sample has none, unless asked for");
@@ -390,6 +392,7 @@ Report Inspection::report() const
   report.limits = limits_of(data);
   report.lost_shadow_count = lost_shadow_count(source);
   report.shadow_counters = data.shadows.counters();
+  report.emission_revision = engine_.emission_->revision();
   report.pass_recordings = data.surfaces.recording_count();
   auto [targets, blocks] = resource_nodes(source);
   report.tree = folder("frame", "the picture", "",

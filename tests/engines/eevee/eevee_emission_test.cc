@@ -124,6 +124,37 @@ TEST(Emission, TheTableIsMadeAgainOnlyForWhatEmits)
   EXPECT_FALSE(is_made_again());
 }
 
+TEST(Emission, EnginesThatShareProgramsShareTheTable)
+{
+  scene::Scene scene;
+  const auto bright = test::add_material(scene, glm::vec3(1.0F));
+  const auto set_strength = [&](float strength) {
+    scene.edit(bright, [&](scene::Material &value) { value.emissive = glm::vec3(strength); });
+  };
+  set_strength(2.0F);
+  test::add_object(scene, test::add_square_mesh(scene, bright), glm::dmat4(1.0));
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  render_scene::RenderScene rendered(*device, scene);
+  Engine first(rendered, {.sample_count = 4});
+  draw::Viewport first_viewport(*device, {8, 8});
+  const auto revision_after_sync = [&](Engine &engine, draw::Viewport &viewport) {
+    draw::Engine *one = &engine;
+    rendered.update();
+    viewport.sync(std::span(&one, 1), rendered.objects());
+    return Inspection(engine, viewport).report().emission_revision;
+  };
+  const std::uint64_t before = revision_after_sync(first, first_viewport);
+  set_strength(3.0F);
+  const std::uint64_t after = revision_after_sync(first, first_viewport);
+  EXPECT_EQ(after, before + 1);
+  Engine second(first, {.sample_count = 1, .emissive_point_count = 4});
+  draw::Viewport second_viewport(*device, {8, 8});
+  EXPECT_EQ(revision_after_sync(second, second_viewport), after) << "the same table";
+  set_strength(4.0F);
+  EXPECT_EQ(revision_after_sync(second, second_viewport), after + 1);
+  EXPECT_EQ(revision_after_sync(first, first_viewport), after + 1) << "made once";
+}
+
 TEST(Emission, ChecksTheNumberOfPoints)
 {
   EXPECT_THROW(names_of(glm::vec3(1.0F), {.sample_count = 4, .emissive_point_count = -1}), gpu::Error);

@@ -2,7 +2,6 @@
 #include "internal/eevee_lights.hh"
 #include "internal/eevee_resource_report.hh"
 
-#include "eevee_sequence_shared.h"
 #include "eevee_settings.hh"
 #include "internal/eevee_material_variants.hh"
 #include "shadows/scene_shadows.hh"
@@ -58,12 +57,13 @@ int light_texture_width(std::size_t count, const gpu::Device &device)
 }
 
 bool SceneLights::sync(const render_scene::RenderScene &scene, const Settings &settings,
-                       std::uint64_t settings_revision, std::uint64_t shaders_revision, SceneShadows &shadows)
+                       std::uint64_t settings_revision, std::uint64_t shaders_revision, SceneEmission &emission,
+                       SceneShadows &shadows)
 {
-  emission_.update(scene, settings.emissive_points() > 0);
+  emission.update(scene, settings.emissive_points() > 0);
   const Key key{scene.lamps_revision(), scene.objects().revision(), scene.passes_revision(),
                 settings_revision,      shaders_revision,           shadows.viewports_revision(),
-                emission_.revision(),   scene.content_revision()};
+                emission.revision(),    scene.content_revision()};
   if (synced_ == key) {
     return false;
   }
@@ -74,6 +74,7 @@ bool SceneLights::sync(const render_scene::RenderScene &scene, const Settings &s
   synced_.reset();
   is_written_ = false;
   revision_++;
+  plan_.emission = emission.surfaces();
   make_plan(scene, settings, shadows);
   synced_ = key;
   return true;
@@ -86,23 +87,16 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   const std::shared_ptr<const render_scene::WorldLight> &world = scene.world();
   const gpu::Limits &limits = scene.device().limits();
   const scene::Bounds &bounds_ws = scene.bounds();
-  auto &[placed, lamps, is_left_out, points, tinted, planned_bounds_ws] = plan_;
+  auto &[placed, lamps, is_left_out, points, tinted, planned_bounds_ws, emission] = plan_;
   placed.assign(scene.lamps().begin(), scene.lamps().end());
   for (scene::PlacedLamp &lamp : placed) {
     lower_range(lamp, settings.light_threshold);
   }
   const std::size_t emission_first = placed.size();
-  const int emissive_count = emission_.surfaces() ? settings.emissive_points() : 0;
+  const int emissive_count = emission ? settings.emissive_points() : 0;
   std::ranges::copy(emission_lamps(emissive_count, bounds_ws), std::back_inserter(placed));
-  std::vector<LampPoint> emissive_points;
   if (shading == LampShading::Whole) {
-    // The points of the one sample do not move, so that their shadows are kept.
-    for (int i = 0; i < emissive_count; i++) {
-      const LampPoint &point = emissive_points.emplace_back(emissive_point(
-          *emission_.surfaces(), std::uint32_t(i), shared::mixed_bits(settings.seed) + std::uint32_t(emission_first),
-          emissive_count, sample_count));
-      scene::PlacedLamp &lamp = placed[emission_first + std::size_t(i)];
-      lamp.world_from_lamp = glm::dmat4(point.world_from_lamp);
+    for (scene::PlacedLamp &lamp : std::span(placed).subspan(emission_first)) {
       lamp.radius = 0.0F;
     }
   }
@@ -110,8 +104,17 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   if (world) {
     std::ranges::copy(world_lamps(*world, world_.directions().count), std::back_inserter(placed));
   }
+  const std::size_t further_first = placed.size();
   const int device_most = limits.buffer_texels_max / LIGHT_TEXELS;
-  Lamps made = make_lamps(placed, shading, std::size_t(std::clamp(device_most, LIGHT_MAX, LIGHT_COUNT_MAX)));
+  const auto most = std::size_t(std::clamp(device_most, LIGHT_MAX, LIGHT_COUNT_MAX));
+  Lamps made = make_lamps(placed, shading, most);
+  if (shading == LampShading::Whole && emissive_count > 0) {
+    const auto further = std::size_t(points_per_shadow * emissive_count);
+    if (made.lights.size() + further <= most) {
+      std::ranges::copy(further_emission_lamps(emissive_count, int(further)), std::back_inserter(placed));
+      add_surface_points(made, placed, further_first);
+    }
+  }
   const bool has_reaches = made.reaches == lamps.reaches && made.cube_light_count == lamps.cube_light_count &&
                            made.cube_everywhere_count == lamps.cube_everywhere_count;
   reaches_revision_ += has_reaches ? 0 : 1;
@@ -124,10 +127,21 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
     set_kind(lamps, world_first + world->suns.size(), placed.size(), LIGHT_WORLD);
   }
   set_kind(lamps, emission_first, world_first, LIGHT_SURFACE);
-  for (std::size_t i = 0; i < lamps.lights.size() && !emissive_points.empty(); i++) {
-    const std::size_t lamp = lamps.lamp_index[i];
-    if (lamp >= emission_first && lamp < world_first) {
-      lamps.lights[i] = light_at(lamps.lights[i], emissive_points[lamp - emission_first]);
+  set_kind(lamps, further_first, placed.size(), LIGHT_SURFACE);
+  if (shading == LampShading::Whole) {
+    // The points of the one sample do not move, so that their shadows are kept.
+    for (std::size_t i = 0; i < lamps.lights.size(); i++) {
+      const std::size_t lamp = lamps.lamp_index[i];
+      if (lamps.lights[i].kind != LIGHT_SURFACE) {
+        continue;
+      }
+      const std::size_t first = lamp < world_first ? emission_first : further_first;
+      const std::size_t end = lamp < world_first ? world_first : placed.size();
+      const LampPoint point =
+          emissive_point(*emission, std::uint32_t(lamp - first), lamp_stream(settings.seed, emission_first),
+                         int(end - first), sample_count);
+      placed[lamp].world_from_lamp = glm::dmat4(point.world_from_lamp);
+      lamps.lights[i] = light_at(lamps.lights[i], point);
     }
   }
   if (shading == LampShading::Point) {
@@ -140,14 +154,14 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   planned_bounds_ws = bounds_ws;
   points = shading == LampShading::Point
                ? LampPoints(placed, lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
-                            world_.directions(), sample_count, emission_.surfaces(), emissive_count)
+                            world_.directions(), sample_count, emission, emissive_count)
                : LampPoints();
   is_left_out.clear();
   for (int i = 0; i < lamps.light_count(); i++) {
     const std::size_t lamp = lamps.lamp_index[std::size_t(i)];
-    const LightPart::Kind part = lamp < emission_first ? LightPart::Kind::Lamp
-                                 : lamp < world_first  ? LightPart::Kind::Emission
-                                                       : LightPart::Kind::World;
+    const LightPart::Kind part = lamp < emission_first                         ? LightPart::Kind::Lamp
+                                 : lamp < world_first || lamp >= further_first ? LightPart::Kind::Emission
+                                                                               : LightPart::Kind::World;
     const bool is_kept =
         settings.light.has(part) && (settings.light.kind != LightPart::Kind::Lamp || settings.light.lamp == lamp);
     is_left_out.push_back(!is_kept);
@@ -171,8 +185,9 @@ void SceneLights::write_block(gpu::Device &device)
 {
   const Lamps &lamps = plan_.lamps;
   shared::LightBlock block{};
-  block.light_count = lamps.light_count();
+  block.light_count = lamps.light_count() - lamps.surface_point_count;
   block.cube_light_count = lamps.cube_light_count;
+  block.surface_point_count = lamps.surface_point_count;
   std::ranges::copy(lamps.lights, block.lights);
   device.update(block_, block);
   if (shape_block_) {

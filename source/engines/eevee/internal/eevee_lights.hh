@@ -22,7 +22,7 @@ inline constexpr int tinted_entry = 1;
 
 /** The lights of a scene: of its lamps, emissive surfaces and world. Needs no device. */
 struct PlannedLights {
-  /** The lamps of the scene, followed by the lamps of emission_lamps and of world_lamps. */
+  /** The lamps of the scene, followed by those of emission_lamps, world_lamps and further_emission_lamps. */
   std::vector<scene::PlacedLamp> placed;
   Lamps lamps;
   /** By index in Lamps::lights: whether the light is not in Settings::light. */
@@ -33,6 +33,8 @@ struct PlannedLights {
   std::optional<int> tinted;
   /** The scene's bounds. */
   scene::Bounds bounds_ws;
+  /** nullptr: they give no light to others, or there are none. */
+  std::shared_ptr<const scene::EmissiveSurfaces> emission;
 
   /** Pixels visit the lights that can reach them, which are in `light_texture`. */
   [[nodiscard]] bool is_clustered() const
@@ -48,11 +50,11 @@ class SceneLights {
   explicit SceneLights(const SceneWorld &world) : world_(world) {}
   /**
    * Plan the lights, and \a shadows of them, if an input changed. Creates no resources on the device.
-   * \a settings_revision, shaders_revision: change whenever the settings or programs do.
+   * \a settings_revision, shaders_revision: change whenever the settings or programs do. \a emission: is updated.
    * \return whether they were planned anew. \throws gpu::Error if a setting of shadows is out of range
    */
   bool sync(const render_scene::RenderScene &scene, const Settings &settings, std::uint64_t settings_revision,
-            std::uint64_t shaders_revision, SceneShadows &shadows);
+            std::uint64_t shaders_revision, SceneEmission &emission, SceneShadows &shadows);
   /** Let the next sync plan again, because work was lost. */
   void forget()
   {
@@ -72,10 +74,6 @@ class SceneLights {
   [[nodiscard]] const PlannedLights &plan() const
   {
     return plan_;
-  }
-  [[nodiscard]] const SceneEmission &emission() const
-  {
-    return emission_;
   }
   /** Increased when lights are planned. */
   [[nodiscard]] std::uint64_t revision() const
@@ -132,7 +130,6 @@ class SceneLights {
   [[nodiscard]] shared::LightData light_in_sample(const LampPoint &point) const;
 
   const SceneWorld &world_;
-  SceneEmission emission_;
   PlannedLights plan_;
   std::optional<Key> synced_;
   std::uint64_t revision_ = 0;

@@ -109,6 +109,7 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
     case Feature::CoarseGrid:
     case Feature::ClipPlanes:
     case Feature::SurfaceInLayers:
+    case Feature::SurfacePoints:
     case Feature::LinesOrPoints:
     case Feature::None: break;
   }
