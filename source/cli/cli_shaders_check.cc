@@ -255,7 +255,9 @@ void write_depfile(const std::string &path, const std::string &target, const std
   const auto escaped = [](const std::string &file) {
     std::string text;
     for (const char c : file) {
-      text += c == ' ' || c == '#' ? fmt::format("\\{}", c) : c == '$' ? std::string("$$") : std::string(1, c);
+      // A colon ends the targets of a line.
+      const bool is_marked = c == ' ' || c == '#' || c == ':';
+      text += is_marked ? fmt::format("\\{}", c) : c == '$' ? std::string("$$") : std::string(1, c);
     }
     return text;
   };

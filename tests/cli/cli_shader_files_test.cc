@@ -265,6 +265,10 @@ TEST_F(ShaderFilesTest, DepfileNamesWhatWasRead)
   EXPECT_EQ(check("a.frag -I 'in clude' --depfile c.d --depfile-target a.spv").status, 0);
   EXPECT_EQ(read("c.d"), text);
   EXPECT_EQ(check("a.frag -MF d.d").status, 2) << "no target";
+  // Characters of make's own.
+  write("c:d#e$f.frag", fragment_head + "void main() { c = vec4(1); }\n");
+  EXPECT_EQ(check("'c:d#e$f.frag' -MF e.d -MT 'x:y.spv'").status, 0);
+  EXPECT_EQ(read("e.d"), "x\\:y.spv: \\\n  c\\:d\\#e$$f.frag\n");
   EXPECT_EQ(check("a.frag -MD -o a.spv").status, 2) << "no depfile";
 }
 

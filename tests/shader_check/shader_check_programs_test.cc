@@ -704,6 +704,11 @@ TEST(CheckProgram, AFileThatIsNoTextIsNamed)
   EXPECT_EQ(
       messages_of(check_texts({{"x.frag", std::string("\n\0x;\n", 5)}})).find("x.frag:2: error: the file has a NUL"),
       0U);
+  for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"}) {
+    EXPECT_EQ(messages_of(check_texts({{"x.frag", mark}})),
+              "x.frag:1: error: the file is text in UTF-16; save it as UTF-8 without a byte-order mark [compile]\n")
+        << "a file of the mark alone";
+  }
   const ProgramCheck check = check_texts({{"x.frag", text + std::string("\0;\n", 3)}});
   EXPECT_EQ(check.target_reason, "");
   EXPECT_EQ(messages_of(check),
@@ -729,6 +734,36 @@ TEST(CheckProgram, OneOfSeveralShadersOfAStageMayBeCheckedAlone)
                 .find("No function definition"),
             std::string::npos)
       << "a program must be whole";
+}
+
+TEST(CheckProgram, AFunctionWithoutABodyIsNamedAsInGlsl)
+{
+  const std::string other = "#version 430\nvoid other() {}\n";
+  const auto message_about = [&](const std::string &declared, const std::string &parameters,
+                                 const std::string &arguments) {
+    const std::string text = fmt::format(
+        "#version 430\nstruct Inner {{ vec2 a[2]; bool b; }};\nstruct Lamp {{ Inner i; mat3x2 m; }};\n{} value;\n"
+        "void call({});\nvoid main() {{ call({}); }}\n",
+        declared, parameters, arguments);
+    const Program program{"test", {{Stage::Vertex, "a.vert"}, {Stage::Vertex, "b.vert"}}, {}};
+    const gpu::ShaderFiles files = [&](std::string_view path) -> std::optional<std::string_view> {
+      return path == "a.vert" ? text : other;
+    };
+    return messages_of(check_program(program, files, for_target(CheckTarget::OpenGl)));
+  };
+  std::istringstream types(
+      "float int uint bool double vec2 ivec3 uvec4 bvec2 dvec3 mat3 mat2x4 dmat4x3 Lamp Inner float[3] Lamp[2] "
+      "vec4[2][3] mat4[5] sampler2D isampler3D usamplerCubeArray sampler2DArrayShadow samplerCubeShadow sampler2DMS "
+      "sampler2DMSArray sampler2DRect samplerBuffer sampler1DShadow");
+  for (std::string type; types >> type;) {
+    const std::string uniform = type.find("sampler") == std::string::npos ? "" : "uniform ";
+    EXPECT_EQ(message_about(uniform + type, type, "value"),
+              fmt::format("a.vert:5: error: Linking vertex stage: No function definition (body) found: call({}) "
+                          "[link]\n",
+                          type));
+  }
+  EXPECT_NE(message_about("Lamp", "Lamp, int, vec3", "value, 1, vec3(1)").find("call(Lamp, int, vec3) [link]"),
+            std::string::npos);
 }
 
 TEST(CheckProgram, AVectorMayBeReadInPart)
@@ -1033,6 +1068,20 @@ TEST(CheckProgram, AnIncludeWithoutAnEndIsAMessage)
   }
   EXPECT_EQ(messages_of(check_texts(texts)),
             "199.glsl:1: error: '200.glsl' is included at a depth of more than 200 [include]\n");
+  // Each level would have a message of its own.
+  texts["a.glsl"] = "#include \"a.glsl\"\n#include \"a.glsl\"\n";
+  texts["b.glsl"] = "float b = 1.0;\n";
+  texts["x.frag"] = including("#include \"a.glsl\"\n#include \"b.glsl\"\n", "1.0");
+  EXPECT_EQ(messages_of(check_texts(texts)),
+            "a.glsl:1: error: 'a.glsl' includes itself, at a depth of more than 200 [include]\n");
+  ProgramOptions with_folder;
+  with_folder.include_folders = {"."};
+  EXPECT_EQ(messages_of(check_texts(texts, with_folder)),
+            "a.glsl:1: error: 'a.glsl' includes itself, at a depth of more than 200 [include]\n");
+  texts["x.frag"] = including("#include <a.glsl>\n#include <absent.glsl>\n", "1.0");
+  EXPECT_EQ(messages_of(check_texts(texts, with_folder)),
+            "a.glsl:1: error: 'a.glsl' includes itself, at a depth of more than 200 [include]\n"
+            "x.frag:4: error: no shader file 'absent.glsl' in the folders of -I [include]\n");
   texts["a.glsl"] = "#ifndef A\n#define A\n#include \"a.glsl\"\nfloat a = 1.0;\n#endif\n";
   texts["x.frag"] = including("#include \"a.glsl\"\n#include \"a.glsl\"\n", "a");
   EXPECT_EQ(messages_of(check_texts(texts)), "") << "a guard ends it";
@@ -1154,6 +1203,37 @@ TEST(CheckProgram, AFeatureOfDevicesIsAWarningUntilItIsAssumed)
   EXPECT_NE(check.messages[0].text.find("--feature scalarBlockLayout"), std::string::npos) << check.messages[0].text;
   options.features = {"scalarBlockLayout"};
   EXPECT_EQ(messages_of(check_texts({{"x.frag", text}}, options)), "");
+}
+
+TEST(CheckProgram, AMistakeInSpirvHasItsPlace)
+{
+  // A declaration, by its name and that of its member.
+  const std::string scalar =
+      "#version 450\n#extension GL_EXT_scalar_block_layout : require\n"
+      "layout(scalar, binding = 0) uniform B {\n  vec3 u;\n  vec3 v;\n  float w[2];\n} b;\n"
+      "layout(location = 0) out vec4 c;\nvoid main() { c = vec4(b.u + b.v, b.w[1]); }\n";
+  const ProgramCheck layout = check_texts({{"x.frag", scalar}}, for_target(CheckTarget::Vulkan12));
+  ASSERT_EQ(layout.messages.size(), 1U) << messages_of(layout);
+  EXPECT_EQ(layout.messages[0].line, 5) << messages_of(layout);
+  // An instruction: its image is combined with its sampler before the branch of the operator `?`.
+  const std::string declarations =
+      "layout(location = 0) out vec4 c;\nlayout(location = 0) in float u;\nlayout(binding = 0) uniform texture2D t;\n"
+      "layout(binding = 1) uniform sampler s;\nfloat f(float x) { return x * 2.0; }\n";
+  const std::string sample = "c = texture(sampler2D(t, s),\nvec2(u > 0.0 ? f(f(u)) : f(u), 0.0));\n";
+  const std::string version = "#version 450\n";
+  for (const auto &[texts, file, line] :
+       {std::tuple(Texts{{"x.frag", version + declarations + "void main() {\n\n" + sample + "}\n"}}, "x.frag", 9),
+        {Texts{{"x.frag", version + declarations + "#line 70 \"a/made.glsl\"\nvoid main() {\n" + sample + "}\n"}},
+         "a/made.glsl", 71},
+        {Texts{{"x.frag", version + "#include \"i.glsl\"\nvoid main() { g(); }\n"},
+               {"i.glsl", declarations + "void g() {\n" + sample + "}\n"}},
+         "i.glsl", 7}}) {
+    const ProgramCheck check = check_texts(texts, for_target(CheckTarget::Vulkan12));
+    ASSERT_EQ(check.messages.size(), 1U) << messages_of(check);
+    EXPECT_EQ(check.messages[0].rule, "spirv");
+    EXPECT_EQ(check.messages[0].file, file);
+    EXPECT_EQ(check.messages[0].line, line) << messages_of(check);
+  }
 }
 
 /** CPU time of this process. */

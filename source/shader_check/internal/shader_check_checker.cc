@@ -3,6 +3,7 @@
 
 #include "gpu_shader_text.hh"
 #include "shader_check_block.hh"
+#include "shader_check_spirv_place.hh"
 #include "shared_types.h"
 
 #include <spirv-tools/libspirv.hpp>
@@ -44,6 +45,17 @@ constexpr std::array<Feature, 5> features = {{
     {"workgroupMemoryExplicitLayoutScalarBlockLayout", &spvtools::ValidatorOptions::SetWorkgroupScalarBlockLayout},
     {"maintenance4", &spvtools::ValidatorOptions::SetAllowLocalSizeId},
 }};
+
+/** Allows the features whose names \a is_allowed takes. */
+template <typename IsAllowed>
+void allow_features(spvtools::ValidatorOptions &options, IsAllowed &&is_allowed)
+{
+  for (const Feature &feature : features) {
+    if (is_allowed(feature.name)) {
+      (options.*feature.allow)(true);
+    }
+  }
+}
 
 /** Whether two stages are parts of one pipeline. */
 bool is_pipeline(Stage stage)
@@ -285,8 +297,9 @@ bool Checker::check_bytes(const StageSource &source)
 {
   bool is_any = false;
   for (const StageSource::File &file : source.texts()) {
-    const std::size_t zero = file.text.find('\0');
-    if (zero == std::string_view::npos) {
+    const bool has_mark = file.text.starts_with("\xFF\xFE") || file.text.starts_with("\xFE\xFF");
+    const std::size_t zero = std::min(file.text.find('\0'), file.text.size());
+    if (zero == file.text.size() && !has_mark) {
       continue;
     }
     is_any = true;
@@ -296,10 +309,9 @@ bool Checker::check_bytes(const StageSource &source)
     const bool is_utf32 =
         first == mark.substr(0, 4) || first == mark.substr(2) ||
         (first.size() == 4 && std::ranges::count(first, '\0') == 3 && (first[0] != '\0') != (first[3] != '\0'));
-    const bool is_utf16 =
-        file.text.starts_with("\xFF\xFE") || file.text.starts_with("\xFE\xFF") ||
-        (zero <= 1 && file.text.size() > zero + 2 && file.text[zero + 1] != '\0' && file.text[zero + 2] == '\0');
-    const std::string_view before = file.text.substr(0, zero);
+    const bool is_utf16 = has_mark || (zero <= 1 && file.text.size() > zero + 2 && file.text[zero + 1] != '\0' &&
+                                       file.text[zero + 2] == '\0');
+    const std::string_view before = file.text.substr(0, is_utf16 || is_utf32 ? 0 : zero);
     add(Severity::Error, "compile", source.files()[file.index], 1 + int(std::ranges::count(before, '\n')),
         is_utf32   ? "the file is text in UTF-32; save it as UTF-8 without a byte-order mark"
         : is_utf16 ? "the file is text in UTF-16; save it as UTF-8 without a byte-order mark"
@@ -407,6 +419,20 @@ std::pair<std::size_t, SourcePosition> Checker::place_of(std::string_view text) 
   }
   if (stages_in_question.empty()) {
     stages_in_question.push_back(c_.sources.size() - 1);
+  }
+  // A function, whose parameters may have types that the stage names before it.
+  for (std::size_t at = text.find('('); at != std::string_view::npos; at = text.find('(', at + 1)) {
+    std::size_t start = at;
+    while (start > 0 && gpu::is_word_character(text[start - 1])) {
+      start--;
+    }
+    const std::string_view name = text.substr(start, at - start);
+    for (const std::size_t stage : stages_in_question) {
+      const auto place = name.empty() || is_plain_word(name) ? std::nullopt : c_.lines[stage].find_name(name, {});
+      if (place) {
+        return {stage, *place};
+      }
+    }
   }
   for (const bool is_declared : {true, false}) {
     for (gpu::TextScanner scanner(text.substr(head.size())); !scanner.rest().empty();) {
@@ -557,8 +583,7 @@ void Checker::check_uniform_locations()
 bool Checker::is_part(const Declaration &output, const Declaration &input) const
 {
   const bool is_allowed =
-      options_.target == CheckTarget::Vulkan13 ||
-      (is_vulkan(options_.target) && std::ranges::find(settings_.features, "maintenance4") != settings_.features.end());
+      options_.target == CheckTarget::Vulkan13 || (is_vulkan(options_.target) && has_feature("maintenance4"));
   return is_allowed && output.type.array_sizes.empty() && input.type.array_sizes.empty() && input.type.row_count == 0 &&
          output.type.scalar == input.type.scalar && input.type.vector_size < output.type.vector_size;
 }
@@ -799,6 +824,46 @@ void Checker::make_spirv()
   }
 }
 
+bool Checker::has_feature(std::string_view name) const
+{
+  return std::ranges::find(settings_.features, name) != settings_.features.end();
+}
+
+SourcePosition Checker::place_in_spirv(std::size_t stage)
+{
+  const std::vector<std::uint32_t> words = c_.spirv_with_lines(stage);
+  std::size_t number = 0;
+  std::string text;
+  spvtools::SpirvTools tools(environment_of(options_.target));
+  tools.SetMessageConsumer([&](spv_message_level_t, const char *, const spv_position_t &position, const char *reason) {
+    if (number == 0) {
+      number = position.index;
+      text = reason;
+    }
+  });
+  spvtools::ValidatorOptions allowed;
+  allowed.SetFriendlyNames(false);
+  allow_features(allowed, [&](std::string_view name) { return has_feature(name); });
+  tools.Validate(words.data(), words.size(), allowed);
+  const SpirvPlace place = spirv_place(words, number);
+  const SourceLines &lines = c_.lines[stage];
+  // Without an includer, files have numbers, which SPIR-V does not keep.
+  if (place.line > 0 && c_.sources[stage]->has_includer()) {
+    return lines.position(place.file, place.line, 0);
+  }
+  for (const std::string &name : place.names) {
+    const std::optional<SourcePosition> found = lines.find_name(name, {});
+    if (found) {
+      constexpr std::string_view mark = "member ";
+      gpu::TextScanner scanner(std::string_view(text).substr(std::min(text.find(mark), text.size())));
+      const std::optional<int> member = scanner.take(mark) ? scanner.take_number() : std::nullopt;
+      return member && std::size_t(*member) < place.members.size() ? lines.find_member(*found, place.members[*member])
+                                                                   : *found;
+    }
+  }
+  return {};
+}
+
 void Checker::validate(std::size_t stage, const std::vector<std::uint32_t> &words, std::string text)
 {
   bool is_warned = !text.empty();
@@ -811,18 +876,13 @@ void Checker::validate(std::size_t stage, const std::vector<std::uint32_t> &word
   const auto is_valid_with = [&](auto &&is_allowed, bool has_names = false) {
     spvtools::ValidatorOptions allowed;
     allowed.SetFriendlyNames(has_names);
-    for (const Feature &feature : features) {
-      if (is_allowed(feature.name)) {
-        (allowed.*feature.allow)(true);
-      }
-    }
+    allow_features(allowed, is_allowed);
     return tools.Validate(words.data(), words.size(), allowed);
   };
-  const auto is_given = [&](std::string_view name) {
-    return std::ranges::find(settings_.features, name) != settings_.features.end();
-  };
+  const auto is_given = [&](std::string_view name) { return has_feature(name); };
   const std::string compiler_text = text;
   bool is_valid = is_valid_with(is_given);
+  const SourcePosition place = is_valid ? SourcePosition() : place_in_spirv(stage);
   if (!is_valid && words.size() <= named_words_max) {
     text = compiler_text;
     is_valid_with(is_given, true);
@@ -840,7 +900,7 @@ void Checker::validate(std::size_t stage, const std::vector<std::uint32_t> &word
   }
   if (!is_valid || is_warned) {
     std::ranges::replace(text, '\n', ' ');
-    add(is_valid ? Severity::Warning : Severity::Error, "spirv", stage, {}, text);
+    add(is_valid ? Severity::Warning : Severity::Error, "spirv", stage, place, text);
   }
 }
 

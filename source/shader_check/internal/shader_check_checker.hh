@@ -71,6 +71,8 @@ class Checker {
   [[nodiscard]] bool is_about_unused_uniform(const LinkMessage &error) const;
   /** Uniforms of OpenGL that share a location, about which glslang is silent. */
   void check_uniform_locations();
+  /** Whether the devices have a feature of device_features(). */
+  [[nodiscard]] bool has_feature(std::string_view name) const;
   /** Whether an input may be a part of a vector that the previous stage writes: since Vulkan 1.3, or maintenance4. */
   [[nodiscard]] bool is_part(const Declaration &output, const Declaration &input) const;
   /** OpenGL ES links stages of one version, and none with one of the desktop. glslang links any. */
@@ -88,6 +90,8 @@ class Checker {
   void check_blocks();
   void check_block_size(std::size_t stage, const Declaration &block);
   void make_spirv();
+  /** The place of the first mistake in the SPIR-V of \a stage that SPIRV-Tools finds. */
+  [[nodiscard]] SourcePosition place_in_spirv(std::size_t stage);
   /** \a text: messages about how \a words were made. */
   void validate(std::size_t stage, const std::vector<std::uint32_t> &words, std::string text);
 

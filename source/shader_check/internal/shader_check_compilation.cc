@@ -69,6 +69,15 @@ const Spirv &Compilation::spirv(std::size_t stage)
   return result;
 }
 
+std::vector<std::uint32_t> Compilation::spirv_with_lines(std::size_t stage)
+{
+  glslang::SpvOptions options;
+  options.generateDebugInfo = true;
+  std::vector<std::uint32_t> words;
+  glslang::GlslangToSpv(*tree(stage), words, &options);
+  return words;
+}
+
 void Compilation::read_facts([[maybe_unused]] bool is_sound, [[maybe_unused]] bool with_mistakes)
 {
   facts.resize(sources.size());

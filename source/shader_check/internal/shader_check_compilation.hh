@@ -43,6 +43,8 @@ struct Compilation {
   bool link();
   /** The stage in SPIR-V. Call it after linking, for targets with SPIR-V. */
   const Spirv &spirv(std::size_t stage);
+  /** The same with the lines of instructions. */
+  [[nodiscard]] std::vector<std::uint32_t> spirv_with_lines(std::size_t stage);
   /**
    * Call it after linking; \a is_sound: the stages are without mistakes, apart from differences between them. Without
    * glslang's tree, the facts of other stages, and those for targets without SPIR-V, are empty.

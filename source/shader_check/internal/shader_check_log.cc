@@ -2,6 +2,7 @@
 #include "shader_check_log.hh"
 
 #include "gpu_shader_text.hh"
+#include "shader_check_mangled.hh"
 
 #include <algorithm>
 #include <charconv>
@@ -212,6 +213,7 @@ std::vector<LinkMessage> link_messages(std::string_view log)
     }
   }
   for (LinkMessage &message : messages) {
+    message.text = with_plain_functions(message.text);
     // glslang's name for the uniforms of all stages before.
     for (const auto &[name, plain] :
          {std::pair<std::string_view, std::string_view>("unknown stage stage", "earlier stage"),

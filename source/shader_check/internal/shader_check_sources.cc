@@ -190,7 +190,11 @@ class StageSource::Includer : public glslang::TShader::Includer {
   }
   IncludeResult *includeSystem(const char *named, const char *, std::size_t depth) override
   {
-    return find(named, depth, nullptr);
+    // glslang asks so after a local include that failed, too. Its reason is the better one.
+    const std::string earlier = std::exchange(reason_, {});
+    IncludeResult *result = earlier.empty() ? find(named, depth, nullptr) : failure(earlier);
+    reason_.clear();
+    return result;
   }
   void releaseInclude(IncludeResult *result) override
   {
@@ -205,6 +209,7 @@ class StageSource::Includer : public glslang::TShader::Includer {
   {
     bytes_ = 0;
     skipped_bytes_ = 0;
+    is_ended_ = false;
   }
 
  private:
@@ -212,11 +217,11 @@ class StageSource::Includer : public glslang::TShader::Includer {
   IncludeResult *find(const std::string &named, std::size_t depth, const fs::path *beside)
   {
     open_files_.resize(depth, 0);
-    if (depth > include_depth_max) {
+    if (depth > include_depth_max && !is_ended_) {
       const std::string circle = circle_text(open_files_.back(), std::span(open_files_).first(depth - 1));
-      return failed(fmt::format("{} at a depth of more than {}",
-                                circle.empty() ? fmt::format("'{}' is included", named) : circle + ",",
-                                include_depth_max));
+      return ended(fmt::format("{} at a depth of more than {}",
+                               circle.empty() ? fmt::format("'{}' is included", named) : circle + ",",
+                               include_depth_max));
     }
     if (beside != nullptr) {
       if (IncludeResult *result = open(*beside)) {
@@ -228,12 +233,8 @@ class StageSource::Includer : public glslang::TShader::Includer {
         return result;
       }
     }
-    if (beside != nullptr) {
-      return failed(fmt::format("no shader file '{}'", beside->lexically_normal().string()));
-    }
-    // glslang asks so after a local include that failed, too. Its reason is the better one.
-    const std::string earlier = std::exchange(reason_, {});
-    return failure(earlier.empty() ? fmt::format("no shader file '{}' in the folders of -I", named) : earlier);
+    return failed(beside != nullptr ? fmt::format("no shader file '{}'", beside->lexically_normal().string())
+                                    : fmt::format("no shader file '{}' in the folders of -I", named));
   }
 
   IncludeResult *open(const fs::path &path)
@@ -256,12 +257,15 @@ class StageSource::Includer : public glslang::TShader::Includer {
       return failed(circle + ", which a file with #version cannot do");
     }
     open_files_.push_back(file);
+    if (is_ended_) {
+      return new IncludeResult(name_of(file), text.data(), 0, nullptr);
+    }
     count(file, text);
     if (bytes_ + source_.text_.size() > stage_bytes_max) {
-      return failed(too_long_text());
+      return ended(too_long_text());
     }
     if (skipped_bytes_ > skipped_bytes_max) {
-      return failed(fmt::format("include guards skip more than {} bytes", skipped_bytes_max));
+      return ended(fmt::format("include guards skip more than {} bytes", skipped_bytes_max));
     }
     reason_.clear();
     return new IncludeResult(name_of(file), text.data(), text.size(), nullptr);
@@ -313,6 +317,12 @@ class StageSource::Includer : public glslang::TShader::Includer {
     }
   }
 
+  /** Reaches a limit. The rest of the stage has empty includes, so that one message says so. */
+  IncludeResult *ended(const std::string &reason)
+  {
+    is_ended_ = true;
+    return failed(reason);
+  }
   IncludeResult *failed(const std::string &reason)
   {
     reason_ = reason;
@@ -338,6 +348,7 @@ class StageSource::Includer : public glslang::TShader::Includer {
   static constexpr std::size_t skipped_bytes_max = 64 * stage_bytes_max;
   std::size_t bytes_ = 0;
   std::size_t skipped_bytes_ = 0;
+  bool is_ended_ = false;
 };
 
 StageSource::StageSource(gpu::ShaderSource source)
