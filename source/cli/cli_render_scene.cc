@@ -162,6 +162,7 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
                           .alpha = alpha_of(options, renderer),
                           .sample_count = work.result.samples_drawn,
                           .sample_share = renderer.engine().sample_share(renderer.viewport()),
+                          .settings = options.settings_text(renderer.settings(), camera),
                           .metadata = work.frames.metadata(index)};
   picture.metadata.emplace_back("gnomon:camera", camera.name);
   picture.metadata.emplace_back("gnomon:device", work.result.device);
