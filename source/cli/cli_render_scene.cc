@@ -348,7 +348,7 @@ void print_result(const RenderOptions &options, const RenderResult &result, cons
     chooser->print_measured();
   }
   if (options.is_explained) {
-    fmt::print("{}", tree_text(result.report.tree));
+    fmt::print("{}", output::printable_text(tree_text(result.report.tree)));
   }
 }
 

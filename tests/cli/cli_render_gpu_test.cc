@@ -342,6 +342,20 @@ TEST_F(CliRenderTest, PartsWithOtherSettingsAreNotMerged)
   EXPECT_EQ(run("merge low.exr high.exr -o whole.exr").status, 1) << "all digits count";
 }
 
+TEST_F(CliRenderTest, NamesInMessagesHaveNoControlCharacters)
+{
+  const std::string name = R"name("$(printf 'a\033[31m\ngnomon: \302\233.gltf')")name";
+  const auto has_none = [](const std::string &text) {
+    return text.find('\x1b') == text.npos && text.find('\x9b') == text.npos && text.find("\ngnomon:") == text.npos;
+  };
+  for (const std::string &arguments : {"render " + name + " -o o.exr", "info " + name, "render s.gltf --no" + name,
+                                       "render s.gltf -o " + name, "compare " + name + " b.exr", name}) {
+    const Finished finished = run(arguments);
+    EXPECT_NE(finished.status, 0);
+    EXPECT_TRUE(has_none(finished.err)) << finished.err;
+  }
+}
+
 TEST_F(CliRenderTest, PartsOfOtherContentUnderTheSameNamesAreNotMerged)
 {
   const auto write_scene = [&](const std::string &color) {
