@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "output_text.hh"
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -33,11 +35,15 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/** Prints to stderr as far as it can be written: a warning that is lost must not end the work. */
+/**
+ * Prints to stderr as far as it can be written: a warning that is lost must not end the work. Names have no characters
+ * that terminals obey, and lines after the first are indented, so that no name looks like a message.
+ */
 template <typename... Arguments>
 void print_message(fmt::format_string<Arguments...> format, Arguments &&...arguments)
 {
-  static_cast<void>(std::fputs(fmt::format(format, std::forward<Arguments>(arguments)...).c_str(), stderr));
+  const std::string text = fmt::format(format, std::forward<Arguments>(arguments)...);
+  static_cast<void>(std::fputs(output::printable_text(text, "  ").c_str(), stderr));
 }
 
 /** A check of an option that accepts numbers from \a min to \a max. CLI::Range alone also accepts "nan". */

@@ -30,7 +30,7 @@ static void print_info(const scene::Scene &scene, bool is_world_default)
     counts[std::size_t(mesh.topology)] += mesh.indices.size() / index_count_of(mesh.topology);
   }
   const auto [triangles, lines, points] = counts;
-  fmt::print("{}\n", scene.path);
+  fmt::print("{}\n", output::printable(scene.path));
   fmt::print("  {} objects of {} meshes, {} triangles{}{} as placed, {} materials\n", objects.size(),
              scene.meshes().size(), triangles, lines > 0 ? fmt::format(", {} lines", lines) : "",
              points > 0 ? fmt::format(", {} points", points) : "", scene.materials().size());
@@ -40,27 +40,28 @@ static void print_info(const scene::Scene &scene, bool is_world_default)
                bounds.max.x, bounds.max.y, bounds.max.z);
   }
   for (const auto &[handle, image] : scene.images()) {
-    fmt::print("  image '{}', {}x{}\n", image.name, image.width, image.height);
+    fmt::print("  image '{}', {}x{}\n", output::printable(image.name), image.width, image.height);
   }
   for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
-    fmt::print("  camera '{}', {}{}\n", camera.name,
+    fmt::print("  camera '{}', {}{}\n", output::printable(camera.name),
                camera.kind == scene::CameraKind::Perspective ? "perspective" : "orthographic",
                scene.is_camera_default ? " (added)" : "");
   }
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
-    fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity,
+    fmt::print("  lamp '{}', {}, {:g} {}{}\n", output::printable(lamp.name), to_string(lamp.kind), lamp.intensity,
                scene::intensity_unit(lamp.kind), scene.is_lamp_default ? " (added)" : "");
   }
   if (scene.world()) {
-    fmt::print("  world, {}{}\n", world_text(*scene.world()), is_world_default ? " (added)" : "");
+    fmt::print("  world, {}{}\n", output::printable(world_text(*scene.world())), is_world_default ? " (added)" : "");
   }
   for (const scene::Animation &animation : scene.animations) {
-    fmt::print("  animation '{}', {:g} s, {} nodes, {} values\n", animation.name, animation.duration(),
-               animation.nodes.size(), animation.values.size());
+    fmt::print("  animation '{}', {:g} s, {} nodes, {} values\n", output::printable(animation.name),
+               animation.duration(), animation.nodes.size(), animation.values.size());
   }
   for (const scene::DeformedMesh &deformed : scene.deformed_meshes) {
-    fmt::print("  deformed mesh '{}', {} vertices, {} morph targets, {}\n", scene.meshes()[deformed.mesh].name,
-               deformed.positions.size(), deformed.targets.size(),
+    fmt::print("  deformed mesh '{}', {} vertices, {} morph targets, {}\n",
+               output::printable(scene.meshes()[deformed.mesh].name), deformed.positions.size(),
+               deformed.targets.size(),
                deformed.skin < 0 ? "no skin"
                                  : fmt::format("{} joints", scene.skins[std::size_t(deformed.skin)].joints.size()));
   }

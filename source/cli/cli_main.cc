@@ -75,10 +75,18 @@ static void refuse_empty_values(CLI::App &app)
   }
 }
 
+/** CLI11's message, but with names as print_message() has them. */
+static std::string failure_message(const CLI::App *app, const CLI::Error &error)
+{
+  const std::string text = output::printable_text(error.what(), "  ");
+  return CLI::FailureMessage::simple(app, CLI::Error(error.get_name(), text, error.get_exit_code()));
+}
+
 static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
   app.set_version_flag("--version", "gnomon " GNOMON_VERSION);
+  app.failure_message(failure_message);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   Status status = Status::Done;

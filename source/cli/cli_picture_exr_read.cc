@@ -57,6 +57,10 @@ std::vector<ExrLayer> layers_of(const Imf::Header &header, int part, bool is_onl
     const std::size_t point = full.rfind('.');
     std::string last = full.substr(point == full.npos ? 0 : point + 1);
     std::ranges::transform(last, last.begin(), [](char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; });
+    // Nuke writes whole words in layers.
+    for (const std::string_view word : {"RED", "GREEN", "BLUE"}) {
+      last = last == word ? std::string(1, word[0]) : last;
+    }
     channels_of[point == full.npos ? "" : full.substr(0, point)].emplace(last, full);
   }
   std::vector<ExrLayer> layers;

@@ -261,29 +261,38 @@ static std::string plain_text(const std::string &text, const std::string &type)
   return color ? fmt::format("{},{},{}", color->r, color->g, color->b) : text;
 }
 
-/**
- * The options with their values, but for those that parts of one picture may differ in: what is written beside it,
- * which part of it is drawn, and how it is checked. A new option is compared unless it is named here.
- */
-static std::string settings_text(const CLI::App &command)
+/** Calls \a visit with each row of settings that an option of `gnomon render` sets. */
+template <typename Visit>
+static void for_each_row(const Visit &visit)
 {
-  std::set<std::string> not_compared(process_options.begin(), process_options.end());
-  // Metadata of their own are compared: the scene's name without its folder, and the number of the frame.
-  not_compared.insert({"scene", "--frames", "--step", "--help", "--strict", "--only-below"});
-  const auto add = [&](const auto &row) {
-    if (!row.makes_picture) {
-      not_compared.insert("--" + std::string(row.option));
-    }
-  };
-  eevee::Settings::for_each_property(add);
-  eevee::ShadowSettings::for_each_property(add);
-  render_scene::Display::for_each_property(add);
-  gltf::ImportOptions::for_each_property(add);
-  scene::Camera::for_each_property(add);
+  eevee::Settings::for_each_property(visit);
+  eevee::ShadowSettings::for_each_property(visit);
+  render_scene::Display::for_each_property(visit);
+  gltf::ImportOptions::for_each_property(visit);
+  scene::Camera::for_each_property(visit);
+}
+
+static std::string option_text(std::string_view name, const std::string &value)
+{
+  const bool is_word = !value.empty() && value.find_first_of(" '") == value.npos;
+  return fmt::format(" --{} {}", name, is_word ? value : fmt::format("'{}'", value));
+}
+
+/**
+ * The options without a row of settings, with their values, but for those that parts of one picture may differ in: what
+ * is written beside it, which part of it is drawn, and how it is checked. A new option is compared unless it is named
+ * here.
+ */
+static std::string given_text(const CLI::App &command)
+{
+  std::set<std::string> left_out(process_options.begin(), process_options.end());
+  // Metadata of their own are compared: the scene's name without its folder, the camera, and the number of the frame.
+  left_out.insert({"scene", "--camera", "--frames", "--step", "--help", "--strict", "--only-below"});
+  for_each_row([&](const auto &row) { left_out.insert("--" + std::string(row.option)); });
   std::string text;
   for (const CLI::Option *option : command.get_options()) {
     const std::string name = option->get_name();
-    if (not_compared.contains(name)) {
+    if (left_out.contains(name)) {
       continue;
     }
     std::string value = option->count() > 0 ? CLI::detail::join(option->results(), " ") : option->get_default_str();
@@ -291,11 +300,52 @@ static std::string settings_text(const CLI::App &command)
       // Its folder may differ between machines. Its content is compared, too.
       value = std::filesystem::path(value).filename().string();
     }
-    value = plain_text(value, option->get_type_name());
-    const bool is_word = !value.empty() && value.find_first_of(" '") == value.npos;
-    text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, is_word ? value : fmt::format("'{}'", value));
+    text += option_text(name.substr(2), plain_text(value, option->get_type_name()));
   }
   return text;
+}
+
+static std::string background_text(const eevee::Background &background)
+{
+  using Kind = eevee::Background::Kind;
+  const glm::vec3 color = background.color;
+  return background.kind == Kind::Color   ? fmt::format("{},{},{}", color.r, color.g, color.b)
+         : background.kind == Kind::World ? "world"
+                                          : "none";
+}
+
+/** The rows of \a part that make the picture, as options with all digits. */
+template <typename T>
+static std::string values_text(const T &part)
+{
+  std::string text;
+  T::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    if (row.option.empty() || !row.makes_picture) {
+      return;
+    }
+    const Value &value = row.access(part);
+    if constexpr (std::is_same_v<Value, eevee::Background>) {
+      text += option_text(row.option, background_text(value));
+    }
+    else if constexpr (std::is_floating_point_v<Value>) {
+      // Without the sign of a zero.
+      text +=
+          option_text(row.option, fmt::format("{}", Value(double(value) * scene::shown_unit(row).factor) + Value(0)));
+    }
+    else {
+      text += option_text(row.option, default_text(row, value));
+    }
+  });
+  return text;
+}
+
+std::string RenderOptions::settings_text(eevee::Settings settings, const scene::Camera &lens) const
+{
+  settings.emissive_point_count = settings.emissive_points();
+  return (given_text + values_text(settings) + values_text(settings.shadow) + values_text(display()) +
+          values_text(import_options()) + values_text(lens))
+      .substr(1);
 }
 
 std::vector<Defaults<eevee::Settings>> setting_defaults()
@@ -474,7 +524,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command.footer(exclusions_text(command));
   command.parse_complete_callback([&options, &command, samples] {
     check_exclusions(command);
-    options.settings_text = settings_text(command);
+    options.given_text = given_text(command);
     if (is_given(command, "--time-limit") && samples->count() == 0) {
       options.samples = 0;
     }

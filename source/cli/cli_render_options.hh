@@ -65,8 +65,9 @@ struct RenderOptions {
   WorldOptions world;
   /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
   std::string background;
-  /** The options that parts of one picture must have in common, as text. */
-  std::string settings_text;
+  /** The options without a row of settings that parts of one picture must have in common, as text. \see settings_text
+   */
+  std::string given_text;
   /** WorkPlan::id of --part; empty: none. */
   std::string plan_id;
   /** PlannedScene::fingerprint of --part. */
@@ -106,6 +107,11 @@ struct RenderOptions {
   [[nodiscard]] gltf::ImportOptions import_options() const;
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;
+  /**
+   * What parts of one picture must have in common, as options. Settings have the values that the picture is made with,
+   * whether an option gave them, the number of samples or the scene. \a lens: of the camera, changed by options
+   */
+  [[nodiscard]] std::string settings_text(eevee::Settings settings, const scene::Camera &lens) const;
 };
 
 /** Settings of the engine that `gnomon render` has without options. */

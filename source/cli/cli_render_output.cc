@@ -64,7 +64,7 @@ static void write_part(const RenderOptions &options, const RenderedPicture &pict
   Metadata metadata = metadata_of(options, picture, options.samples);
   metadata.emplace_back(share_metadata, fmt::format("{}", picture.sample_share));
   metadata.emplace_back(range_metadata, fmt::format("{}-{}", range.x, range.y));
-  metadata.emplace_back("gnomon:settings", options.settings_text);
+  metadata.emplace_back("gnomon:settings", picture.settings);
   ExrPart part{whole_px,
                region.size_px,
                {region.origin_px.x, whole_px.y - region.origin_px.y - region.size_px.y},

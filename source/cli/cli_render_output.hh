@@ -22,6 +22,8 @@ struct RenderedPicture {
   /** Samples of each pixel, and the share of the whole picture's that they are (eevee::Engine::sample_share). */
   int sample_count = 0;
   double sample_share = 1.0;
+  /** RenderOptions::settings_text. */
+  std::string settings{};
   /** Camera, device, frame and part. */
   Metadata metadata{};
 };

@@ -162,6 +162,7 @@ RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene:
                           .alpha = alpha_of(options, renderer),
                           .sample_count = work.result.samples_drawn,
                           .sample_share = renderer.engine().sample_share(renderer.viewport()),
+                          .settings = options.settings_text(renderer.settings(), camera),
                           .metadata = work.frames.metadata(index)};
   picture.metadata.emplace_back("gnomon:camera", camera.name);
   picture.metadata.emplace_back("gnomon:device", work.result.device);
@@ -347,7 +348,7 @@ void print_result(const RenderOptions &options, const RenderResult &result, cons
     chooser->print_measured();
   }
   if (options.is_explained) {
-    fmt::print("{}", tree_text(result.report.tree));
+    fmt::print("{}", output::printable_text(tree_text(result.report.tree)));
   }
 }
 

@@ -391,7 +391,7 @@ std::size_t Run::measure_all()
     text += measure::to_text(scene);
   }
   output::write_file(folder_ / "report.txt", text);
-  fmt::print("{}", text);
+  fmt::print("{}", output::printable_text(text));
   for (const measure::SceneReport &scene : run_.scenes) {
     for (const measure::TechniqueReport &technique : scene.techniques) {
       non_finite += measure::all_lamps(technique.lamps).non_finite_count;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shader_report.hh"
 
+#include "output_text.hh"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -115,12 +117,11 @@ std::string left_out_text(std::string_view target, const std::vector<std::string
                      fmt::join(rules, ", "));
 }
 
-/** A line of text for people. Names of files and programs may have control characters, which terminals obey. */
+/** A line of text for people. */
 std::string line_of(std::string text)
 {
-  std::ranges::replace_if(
-      text, [](char c) { return (c >= 0 && c < ' ' && c != '\t') || c == '\x7F'; }, '?');
-  return text + '\n';
+  std::ranges::replace(text, '\n', '?');
+  return output::printable_text(text) + '\n';
 }
 
 }  // namespace

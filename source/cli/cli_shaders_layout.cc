@@ -84,7 +84,8 @@ Status engine_layout(const std::string &folder)
   }
   for (const shader_check::BlockComparison &comparison : comparisons) {
     for (const shader_check::BlockDifference &difference : shader_check::differences(comparison)) {
-      fmt::print("{}:{}: error: {} [layout]\n", files.shown(difference.file), difference.line, difference.text);
+      fmt::print("{}:{}: error: {} [layout]\n", output::printable(files.shown(difference.file)), difference.line,
+                 output::printable(difference.text));
       status = Status::Failed;
     }
   }

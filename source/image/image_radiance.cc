@@ -57,6 +57,13 @@ Axis take_axis(std::string_view &line)
   return axis;
 }
 
+/** \a text without blanks at its ends, over which Radiance's own programs pass, too. */
+std::string_view without_blanks(std::string_view text)
+{
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
+}
+
 /** Reads the numbers of a line of the header into \a values. \return the count of those that are in the line */
 std::size_t read_numbers(std::string_view numbers, std::span<double> values)
 {
@@ -128,7 +135,7 @@ RadianceDecoder::RadianceDecoder(std::span<const unsigned char> file)
   for (std::string_view line = take_line(text); !line.empty(); line = take_line(text)) {
     const std::size_t equals = line.find('=');
     const std::string_view key = line.substr(0, equals);
-    const std::string_view value = equals == line.npos ? std::string_view() : line.substr(equals + 1);
+    const std::string_view value = equals == line.npos ? std::string_view() : without_blanks(line.substr(equals + 1));
     if (key == "FORMAT") {
       is_xyz_ = value == "32-bit_rle_xyze";
       if (!is_xyz_ && value != "32-bit_rle_rgbe") {

@@ -12,8 +12,9 @@ namespace gnomon::scene {
 
 ImageUse use_of(const Material &material, const TextureInput &input)
 {
-  const bool covers = input.slot == &Material::base_color_texture && material.alpha_mode != AlphaMode::Opaque &&
-                      !material.surface_function;
+  const bool has_hidden_texels =
+      material.alpha_mode == AlphaMode::Mask ? material.alpha_cutoff > 0.0F : material.alpha_mode == AlphaMode::Blend;
+  const bool covers = input.slot == &Material::base_color_texture && has_hidden_texels && !material.surface_function;
   return covers           ? material.alpha_mode == AlphaMode::Mask ? ImageUse::Mask : ImageUse::Coverage
          : input.is_color ? ImageUse::Color
                           : ImageUse::Data;

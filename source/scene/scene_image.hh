@@ -11,8 +11,8 @@
 namespace gnomon::scene {
 
 /**
- * The use of the image of one of the material's slots. A base colour is Coverage or Mask if alpha hides texels of it; a
- * surface function may read hidden texels, therefore its base colour is neither.
+ * The use of the image of one of the material's slots. A base colour is Coverage or Mask if alpha hides texels of it,
+ * as no mask with a cutoff of 0 does; a surface function may read hidden texels, therefore its base colour is neither.
  */
 [[nodiscard]] ImageUse use_of(const Material &material, const TextureInput &input);
 

@@ -67,6 +67,14 @@ TEST_F(RadiancePictureTest, OtherPrimariesAreNamed)
   EXPECT_FALSE(has_warning("FORMAT=32-bit_rle_xyze\nPRIMARIES=0.64 0.33\n")) << "XYZ has no primaries";
 }
 
+TEST_F(RadiancePictureTest, BlanksAroundTheFormatAreNoPartOfIt)
+{
+  for (const std::string format : {"FORMAT= 32-bit_rle_rgbe\n", "FORMAT=\t32-bit_rle_rgbe \r\n"}) {
+    write("a.hdr", "#?RADIANCE\n" + format + "\n-Y 1 +X 1\n\x80\x40\x20\x81");
+    EXPECT_EQ(cli::read_picture(folder / "a.hdr").pixels.at(0), glm::vec4(1.0F, 0.5F, 0.25F, 1.0F));
+  }
+}
+
 /** Bytes of a pixel with the values m 2^-8. */
 std::string pixel_of(int red, int green, int blue)
 {

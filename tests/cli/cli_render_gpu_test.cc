@@ -331,6 +331,29 @@ TEST_F(CliRenderTest, PartsWithOtherSettingsAreNotMerged)
       0);
   const Finished merged = run("merge low.exr high.exr -o whole.exr");
   EXPECT_EQ(merged.status, 0) << merged.err;
+  // The values that settings have if no option gives them. The scene's only camera is the one that the import adds.
+  for (const std::string same : {"--emissive-points 4", "--emissive-points auto", "--camera default", "--aperture 0.0",
+                                 "--exposure -0", "--cascade-range view"}) {
+    ASSERT_EQ(run(render + "-o high.exr --tile 2/2 --variant red --light-threshold 0 " + same).status, 0) << same;
+    const Finished again = run("merge low.exr high.exr -o whole.exr");
+    EXPECT_EQ(again.status, 0) << same << ": " << again.err;
+  }
+  ASSERT_EQ(run(render + "-o high.exr --tile 2/2 --variant red --light-threshold 1e-7").status, 0);
+  EXPECT_EQ(run("merge low.exr high.exr -o whole.exr").status, 1) << "all digits count";
+}
+
+TEST_F(CliRenderTest, NamesInMessagesHaveNoControlCharacters)
+{
+  const std::string name = R"name("$(printf 'a\033[31m\ngnomon: \302\233.gltf')")name";
+  const auto has_none = [](const std::string &text) {
+    return text.find('\x1b') == text.npos && text.find('\x9b') == text.npos && text.find("\ngnomon:") == text.npos;
+  };
+  for (const std::string &arguments : {"render " + name + " -o o.exr", "info " + name, "render s.gltf --no" + name,
+                                       "render s.gltf -o " + name, "compare " + name + " b.exr", name}) {
+    const Finished finished = run(arguments);
+    EXPECT_NE(finished.status, 0);
+    EXPECT_TRUE(has_none(finished.err)) << finished.err;
+  }
 }
 
 TEST_F(CliRenderTest, PartsOfOtherContentUnderTheSameNamesAreNotMerged)

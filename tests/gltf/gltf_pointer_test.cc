@@ -48,6 +48,22 @@ TEST(GltfPointer, VisibilityIsPlayed)
   }
 }
 
+TEST(GltfPointer, VisibilityHasNoValuesBetweenKeys)
+{
+  GltfBuilder builder = triangle_scene();
+  json &animation = builder.document["animations"][0];
+  const int input = builder.accessor<float>({0, 1, 2}, Float32, "SCALAR");
+  const int output = builder.accessor(std::vector<std::uint8_t>{0, 1, 0}, Uint8, "SCALAR");
+  animation["samplers"] = {{{"input", input}, {"output", output}}};
+  animation["channels"] = {{{"sampler", 0}, {"target", pointer_to("/nodes/0/extensions/KHR_node_visibility/visible")}}};
+  Scene scene = import(builder);
+  EXPECT_WARNING(scene, "'visible' has no values between two keys: STEP is taken for LINEAR");
+  pose_first(scene, 0.5);
+  EXPECT_TRUE(scene.objects().empty());
+  pose_first(scene, 1.5);
+  EXPECT_EQ(scene.objects().size(), 1U);
+}
+
 TEST(GltfPointer, TransformsOfTexturesArePlayed)
 {
   const std::vector<std::pair<std::string, scene::TextureSlot scene::Material::*>> slots{

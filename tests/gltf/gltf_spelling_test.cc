@@ -67,6 +67,15 @@ TEST(GltfSpelling, FaultsOfJsonAreNamedWithLineAndByte)
   EXPECT_HAS(value("\"a\\uD800\""), in_string + "'\\uD800', half of a surrogate pair");
 }
 
+TEST(GltfSpelling, LinesOfFaultsEndAsTheFilesDo)
+{
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string start = "{\"asset\":" + end + "{\"version\": \"2.0\"}," + end + end + "  \"a\": ";
+    EXPECT_HAS(import_error(start + "NaN" + end + "}"),
+               "line 4, column 8 (byte " + std::to_string(start.size()) + "): found 'NaN'");
+  }
+}
+
 TEST(GltfSpelling, CommasAndEndsAreNamed)
 {
   EXPECT_HAS(import_error("{\"a\": [1, 2,\n]}"), "line 1, column 12 (byte 11): found a comma before ']'");
@@ -313,7 +322,8 @@ TEST(GltfSpelling, ExtensionsThatAreNotReadAreNamedWhereverTheyStand)
       {"/animations/0/samplers/0", "animations[0].samplers[0]"},
       {"/animations/0/channels/0", "animations[0].channels[0]"},
       {"/animations/0/channels/0/target", "animations[0].channels[0].target"},
-      {"/extensions/KHR_lights_punctual/lights/0", "extensions.KHR_lights_punctual.lights[0]"}};
+      {"/extensions/KHR_lights_punctual/lights/0", "extensions.KHR_lights_punctual.lights[0]"},
+      {"/materials/0/extensions/KHR_materials_unlit", "materials[0].extensions.KHR_materials_unlit"}};
   for (std::size_t i = 0; i < places.size(); i++) {
     GltfBuilder changed = builder;
     const auto &[pointer, name] = places[i];

@@ -96,6 +96,18 @@ TEST(CoverageLevels, OfAMaskAreSharesOfTheTexelsAtLeastAtItsCutoff)
   EXPECT_EQ(coverage_levels({"none", 1, 2, {1, 1, 1, 99, 1, 1, 1, 99}}, {0.5F})[11], 0);
 }
 
+TEST(CoverageLevels, AreNotOfMasksThatHideNothing)
+{
+  const auto base_color = std::ranges::find(texture_inputs, &Material::base_color_texture, &TextureInput::slot);
+  Material material;
+  material.alpha_mode = AlphaMode::Mask;
+  EXPECT_EQ(use_of(material, *base_color), ImageUse::Mask);
+  material.alpha_cutoff = 0.0F;
+  EXPECT_EQ(use_of(material, *base_color), ImageUse::Color) << "also texels with alpha 0 are seen";
+  material.alpha_mode = AlphaMode::Blend;
+  EXPECT_EQ(use_of(material, *base_color), ImageUse::Coverage);
+}
+
 TEST(CoverageLevels, AreMeansOfLightAlsoForOddEdges)
 {
   // Opaque: the mean of the light of 0 and 255 is 187.5 / 255 encoded.

@@ -127,7 +127,7 @@ class AnimationImporter {
     }
     const std::optional<PointerParts> parts = parts_of(channel.pointer);
     if (parts && parts->collection == "nodes" && parts->path == visibility_path) {
-      import_visibility_channel(sampler, parts->index, animation);
+      import_visibility_channel(sampler, parts->index, what, animation);
       return;
     }
     if (parts && parts->collection == "meshes" && parts->path == "weights") {
@@ -181,7 +181,8 @@ class AnimationImporter {
     }
   }
 
-  void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
+  void import_visibility_channel(const Model::AnimationSampler &sampler, int node, const std::string &what,
+                                 scene::Animation &animation)
   {
     if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
       fail_without_target("node", node, file_.model.nodes.size());
@@ -189,7 +190,12 @@ class AnimationImporter {
     AnimatedValue value;
     value.target = things_.nodes[std::size_t(node)];
     value.property = "is_visible";
-    value.track = track(sampler, 1, Model::ElementType::Scalar);
+    Model::AnimationSampler steps = sampler;
+    if (sampler.interpolation == "LINEAR") {
+      warnings_.add(what, "'visible' has no values between two keys: STEP is taken for LINEAR");
+      steps.interpolation = "STEP";
+    }
+    value.track = track(steps, 1, Model::ElementType::Scalar);
     animation.values.push_back(value);
   }
 

@@ -152,8 +152,10 @@ class MaterialParser {
       else if constexpr (std::is_same_v<Value, bool>) {
         // An extension without members says true.
         const bool is_extension = at.outer->key == extensions_key;
-        material_.factors[row.name] = {is_extension ? (static_cast<void>(object_at(at, value)), 1.0)
-                                                    : double(boolean_at(at, value))};
+        if (is_extension) {
+          read_members(at, value);
+        }
+        material_.factors[row.name] = {is_extension ? 1.0 : double(boolean_at(at, value))};
         is_read = true;
       }
     });

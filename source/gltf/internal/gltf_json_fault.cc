@@ -336,9 +336,15 @@ std::string json_fault(std::string_view text)
     return {};
   }
   const std::string_view before = text.substr(0, fault->at);
-  const auto line = 1 + std::ranges::count(before, '\n');
-  // npos + 1 is 0.
-  const std::size_t line_start = before.rfind('\n') + 1;
+  // Lines end with \n, \r\n, or, in old files, \r alone.
+  std::size_t line = 1;
+  std::size_t line_start = 0;
+  for (std::size_t i = 0; i < before.size(); i++) {
+    if (before[i] == '\n' || (before[i] == '\r' && !text.substr(i).starts_with("\r\n"))) {
+      line++;
+      line_start = i + 1;
+    }
+  }
   return "line " + std::to_string(line) + ", column " + std::to_string(fault->at - line_start + 1) + " (byte " +
          std::to_string(fault->at) + "): found " + fault->found;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_report.hh"
 
+#include "output_text.hh"
+
 #include <array>
 #include <cstdio>
 
@@ -35,13 +37,7 @@ std::string printable(std::string_view name, std::size_t size_max)
     }
     result += "...";
   }
-  for (char &character : result) {
-    const auto code = static_cast<unsigned char>(character);
-    if (code < 0x20 || code == 0x7F) {
-      character = '?';
-    }
-  }
-  return result;
+  return output::printable(result);
 }
 
 std::string label(std::string_view kind, std::string_view name, std::size_t index)

@@ -28,7 +28,7 @@ struct LimitFault : Fault {
   }
 };
 
-/** A name from a file for a one-line message: shortened to \a size_max bytes, and without control characters. */
+/** A name from a file for a one-line message: shortened to \a size_max bytes. \see output::printable */
 [[nodiscard]] std::string printable(std::string_view name, std::size_t size_max = 80);
 
 /** `kind 'name'`, or `kind index` if the name is empty. */
