@@ -158,7 +158,7 @@ class SharedDeviceTest : public testing::Test {
   void use_new_device()
   {
     SharedDevice::device.reset();
-    SetUp();
+    SharedDeviceTest::SetUp();
   }
 
   /** How often a pass named \a pass has run since the test began. */
