@@ -154,11 +154,14 @@ class SharedDeviceTest : public testing::Test {
     }
   }
 
-  /** For tests of what a device has compiled or allocated. \pre no resource is on the device */
-  void use_new_device()
+  /**
+   * Sets the test up again on a new device, for tests of what a device has compiled or allocated. \pre the test has no
+   * resource
+   */
+  void set_up_on_new_device()
   {
     SharedDevice::device.reset();
-    SharedDeviceTest::SetUp();
+    SetUp();
   }
 
   /** How often a pass named \a pass has run since the test began. */

@@ -168,6 +168,8 @@ TEST_F(HostContextGpu, CallsInAnotherContextAreErrorsAndTouchNothingThere)
     expect_contains(messages.empty() ? "" : messages.front(),
                     "is not current on this thread: its objects are not deleted");
   }
+  // Without a current context.
+  eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   expect_contains(error_of([&] { device->finish(); }), message);
   host.make_current();
   EXPECT_EQ(small_picture(*device), SMALL_PICTURE);

@@ -358,6 +358,30 @@ TEST_F(ClosedRoomsGpuTest, OneSampleInAWorldIsBlack)
   EXPECT_EQ(leaks.shining, 0) << leaks.rooms;
 }
 
+/** A lit texel beside the shadow of one wall shows the place where that wall meets the receiver. */
+TEST_F(ClosedRoomsGpuTest, ACornerOfThreeWallsUnderASunIsBlack)
+{
+  Room room(0);
+  room.scene = {};
+  room.half = {2.2, 1.35, 2.2};
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1, 2, 3));
+  room.world_from_room = glm::translate(turn, glm::dvec3(0, 1.35, 0));
+  room.add_walls();
+  scene::Lamp sun;
+  sun.kind = scene::LampKind::Sun;
+  sun.intensity = float(std::numbers::pi);
+  test::add_lamp(room.scene, sun, glm::dmat4(glm::mat3_cast(glm::dquat(0.812, 0.5, 0.3, 0))));
+  room.camera.world_from_camera = glm::translate(turn, glm::dvec3(-1.32, 1.485, 1.32)) *
+                                  glm::mat4_cast(glm::dquat(0.913215, -0.139968, -0.378266, -0.0579765));
+  room.camera.near = 0.01F;
+  test::Renderer renderer(*device, room.scene, {640, 360}, offline_settings(1));
+  float largest = 0.0F;
+  for (const glm::vec4 &pixel : renderer.picture(room.camera).pixels) {
+    largest = std::max(largest, pixel.r);
+  }
+  EXPECT_LE(largest, 1e-4F);
+}
+
 /** The floor's edges lie within the lower edges of walls, and the ceiling's within the upper ones. */
 TEST_F(ClosedRoomsGpuTest, NoSampleSeesThroughTJoints)
 {

@@ -662,7 +662,7 @@ TEST_F(OverlayGpuTest, PixelsOutsideOfThePictureHaveNothingAndEditsWithoutAnUpda
 
 TEST_F(OverlayGpuTest, NothingIsMadeBeforeAPixelCanSeeAnObject)
 {
-  use_new_device();
+  set_up_on_new_device();
   const auto node = add_square(0, test::add_material(scene, glm::vec3(0.5F)), 0.1);
   EXPECT_FALSE(pick(0, 0));
   outline({});
@@ -778,7 +778,7 @@ TEST_F(OverlayGpuTest, ALineThatBeginsBehindTheEyeIsDrawnFromTheNearPlaneOn)
 
 TEST_F(OverlayGpuTest, NothingIsMadeWithoutLinesAndLinesOnTopDrawNoObject)
 {
-  use_new_device();
+  set_up_on_new_device();
   add_square(0, test::add_material(scene, glm::vec3(0.5F)));
   // Drawing without lines creates nothing.
   lines({});

@@ -316,7 +316,7 @@ TEST_F(ClipPlanesTest, PlanesAroundARectangleLeaveWhatItShows)
 
 TEST_F(ClipPlanesTest, EnginesAndPickingShowTheSamePartsOfSurfaces)
 {
-  use_new_device();
+  set_up_on_new_device();
   scene.edit(glass, [](scene::Node &one) { one.is_visible = false; });
   const std::vector<glm::dvec4> planes = {{0.8, 0, -0.6, 0.9}, {0, -1, 0, 0.8}};
   // Above all planes by more than rounding; below one; between.
