@@ -245,8 +245,9 @@ CenterLight center_light(LightData light, int index, const int lights, Surface s
 struct SurfaceLight {
   /** Radiance towards the viewer of all points without shadows, W/(sr m²). */
   vec3 radiance;
-  /** Of those points that have shadows: without and with them. */
+  /** Sum over the points that have shadows, as if they had none. */
   float shadowless;
+  /** The same sum with their shadows. */
   float arriving;
 };
 SurfaceLight surface_light;

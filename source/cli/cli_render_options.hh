@@ -108,8 +108,8 @@ struct RenderOptions {
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;
   /**
-   * What parts of one picture must have in common, as options. Settings have the values that the picture is made with,
-   * whether an option gave them, the number of samples or the scene. \a lens: of the camera, changed by options
+   * The options that parts of one picture must have in common, with the values that the picture is made with: they may
+   * come from an option, the number of samples or the scene. \a lens: the camera after the options were applied
    */
   [[nodiscard]] std::string settings_text(eevee::Settings settings, const scene::Camera &lens) const;
 };

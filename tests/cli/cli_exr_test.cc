@@ -231,7 +231,7 @@ TEST_F(ExrPictureTest, TheOnlyLayerIsReadAndOneOfSeveralIsNamed)
   write_channels("root.exr", spec, {"R", "G", "B", "Sky.R", "Sky.G", "Sky.B"});
   EXPECT_EQ(first_pixel("root.exr"), glm::vec3(1, 2, 3));
   EXPECT_EQ(first_pixel("root.exr", "Sky"), glm::vec3(4, 5, 6));
-  // As Nuke writes layers.
+  // Nuke writes such names.
   write_channels("words.exr", spec, {"Sky.red", "Sky.green", "Sky.blue"});
   EXPECT_EQ(first_pixel("words.exr"), glm::vec3(1, 2, 3));
   write_channels("two.exr", spec, {"Fog.R", "Fog.G", "Fog.B", "Sky.a.R", "Sky.a.G", "Sky.a.B"});

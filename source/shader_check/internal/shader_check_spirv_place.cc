@@ -85,7 +85,7 @@ class PlaceReader {
   int line_ = 0;
   std::map<std::uint32_t, std::string> strings_;
   std::map<std::uint32_t, std::string> names_;
-  /** Of structs, in their order. */
+  /** Names of the members of each struct, in their order. */
   std::map<std::uint32_t, std::vector<std::string>> members_;
   /** The ids that the instruction of a result reads. */
   std::map<std::uint32_t, std::vector<std::uint32_t>> read_by_;

@@ -9,9 +9,9 @@
 
 namespace gnomon::shader_check {
 
-/** What an instruction of SPIR-V says about its place in the text. */
+/** The place of a SPIR-V instruction in the text of its shader. */
 struct SpirvPlace {
-  /** Of OpLine, as glslang names the file; line 0: the instruction has none. */
+  /** File and line of its OpLine. The file has glslang's name. Line 0: the instruction has no OpLine. */
   std::string file;
   int line = 0;
   /** Names of what it declares or reads, the nearest first. */
