@@ -60,18 +60,13 @@ float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPla
 }
 
 /**
- * Whether none of the \a lit ones of four texels shows the receiver's surface. They are then outside of a closed room, for example.
+ * Whether a lookup is beyond the end of the receiver's surface, such as outside of a closed room: casters are beside it, because not all
+ * four texels are \a lit, and no texel of \a openings shows the surface. \a openings: lit texels that show no caster.
  * \a height: of what the texels show, above the receiver's plane. Always false without SURFACE_IN_LAYERS.
  */
-bool ends_surface(vec4 lit, vec4 height, float surface_depth)
+bool is_beyond_surface(vec4 lit, vec4 openings, vec4 height, float surface_depth)
 {
-  return SURFACE_IN_LAYERS && dot(lit * step(abs(height), vec4(surface_depth)), vec4(1.0)) == 0.0;
-}
-
-/** Whether a lookup is beyond the end of the receiver's surface: casters are beside it, and no lit texel shows the surface. */
-bool is_beyond_surface(vec4 lit, vec4 height, float surface_depth)
-{
-  return dot(lit, vec4(1.0)) < 4.0 && ends_surface(lit, height, surface_depth);
+  return SURFACE_IN_LAYERS && dot(lit, vec4(1.0)) < 4.0 && dot(openings * step(abs(height), vec4(surface_depth)), vec4(1.0)) == 0.0;
 }
 
 /** Visibility at an offset from the receiver: bilinear blend of the four texels; 0 beyond the end of the receiver's surface. */
@@ -83,7 +78,7 @@ float offset_visibility(sampler2DArray depths, int layer, int size_px, ReceiverP
   vec4 on_plane = plane_depths(plane.depth, plane.slope, corner - plane.texel);
   vec4 lit = texels_lit(stored, max(on_plane, vec4(plane.least_depth)));
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
-  return is_beyond_surface(lit, stored - on_plane, plane.surface_depth) ? 0.0 : blend;
+  return is_beyond_surface(lit, lit, stored - on_plane, plane.surface_depth) ? 0.0 : blend;
 }
 
 /** Error of a caster that is continued to the receiver, in texels. */
@@ -127,7 +122,6 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   vec4 receiver = max(plane_depths(plane.depth, plane.slope, corner - plane.texel), vec4(plane.least_depth));
   vec4 lit = texels_lit(stored, receiver);
   float blend = weighted_texels(lit, vec2(1.0 - fraction.x, fraction.x), vec2(1.0 - fraction.y, fraction.y));
-  bool is_hidden = is_beyond_surface(lit, stored - receiver, plane.surface_depth);
   // The direction towards the casters, and the four texels one further there.
   vec2 side = sign(vec2(lit.x + lit.w - lit.y - lit.z, lit.z + lit.w - lit.x - lit.y));
   vec2 moved = clamp(corner + side, vec2(0.0), last) - corner;
@@ -171,8 +165,8 @@ float receiver_visibility(sampler2DArray depths, int layer, int size_px, Receive
   // Beyond the end, light rises within a part of the error. A blend of texels shows dark dashes along the foot of a lit wall.
   blend = is_edge && at_receiver <= 0.0 ? min(-at_receiver / max(CONTACT_RISE * error, 1e-30), 1.0) : blend;
   // Before the rise is complete, a surface that ends within the texels of the contact is in shadow: a corner of three walls.
-  is_hidden = is_hidden || (is_edge && at_receiver > -CONTACT_RISE * error && ends_surface(is_beside, height, plane.surface_depth));
-  return is_hidden ? 0.0 : blend;
+  bool is_contact = is_edge && at_receiver > -CONTACT_RISE * error;
+  return is_beyond_surface(lit, is_contact ? is_beside : is_lit, height, plane.surface_depth) ? 0.0 : blend;
 }
 
 float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane,
