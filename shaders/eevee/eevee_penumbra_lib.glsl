@@ -129,8 +129,16 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
     is_search = is_search && ++i < PENUMBRA_SEARCH_TAPS && length(tap) > innermost;
   } while (is_search || (gap > 0.0 && disk_taps < PENUMBRA_DISK_TAPS));
   float sun_scale = gap * (1.0 - sun_drop) * inversesqrt(max(2.0 - sun_drop, 1.0));
+  // The part of the lamp below the receiver's horizon gives no light, and its lookups are beyond the receiver's wall, outside of a room.
+  // Within a half width above the horizon, the part counts less: its lookups are in texels that show both sides of the wall.
+  vec3 to_center = light.kind == LIGHT_SUN ? to_light : light.position_ws - surface.position_ws;
+  float cos_center = dot(surface.geometric_normal_ws, to_center);
+  vec2 cos_change = vec2(dot(surface.geometric_normal_ws, axis_x), dot(surface.geometric_normal_ws, axis_y));
+  float per_cos = 1.0 / max(gap * length(cos_change), 1e-30);
+  bool is_sharp = gap <= innermost;
   float sum = 0.0;
-  if (gap > 0.0) {
+  float weights = 0.0;
+  if (!is_sharp) {
     i = 0;
     do {
       // The points of vogel_disk, turned. A rotation from point to point needs no cosine and sine.
@@ -140,12 +148,16 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
       float drop = sun_drop * dot(point, point);
       point *= sun_scale * sqrt(max(2.0 - drop, 1.0)) / max(1.0 - drop, 1e-6);
       // A caster with a smaller gap covers a point beyond the lamp there. It may be behind the receiver. Not for suns: with those of a
-      // world, the picture of one sample has more error (scene world, RMSE 0.0849 to 0.0855).
+      // world, the picture of one sample has more error (scene world, RMSE 0.0849 to 0.0855). The same for the horizon.
       float least_gap = light.kind == LIGHT_SUN ? 0.0 : length(point) / PENUMBRA_REACH;
-      sum += shadow_at(receiver, lights, point.x * axis_x + point.y * axis_y, least_gap, false);
+      float weight = light.kind == LIGHT_SUN ? 1.0 : clamp((cos_center * gap + dot(cos_change, point)) * per_cos, 0.0, 1.0);
+      sum += weight * shadow_at(receiver, lights, point.x * axis_x + point.y * axis_y, least_gap, false);
+      weights += weight;
     } while (++i < PENUMBRA_TAPS);
   }
-  // Without a caster, the lamp has the visibility of its centre. A blend of the texels around the receiver would show those of its own
-  // surface, or of what it touches, as dark lines.
-  return gap > 0.0 ? sum / float(PENUMBRA_TAPS) : shadow_at(receiver, lights, vec3(0.0), 0.0, true);
+  // Without a caster, or where penumbrae are narrower than a texel, the lamp has the visibility of its centre, with the rule for contacts. A
+  // blend of the texels around the receiver would show those of its own surface, or of what it touches, as dark lines. A receiver whose
+  // back the centre sees is in the shadow of itself.
+  float of_center = cos_center > 0.0 ? shadow_at(receiver, lights, vec3(0.0), 0.0, true) : 0.0;
+  return is_sharp ? of_center : sum / max(weights, 1e-30);
 }

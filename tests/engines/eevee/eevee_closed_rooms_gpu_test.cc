@@ -275,6 +275,19 @@ class ClosedRoomsGpuTest : public test::SharedDeviceTest {
     }
     return leaks;
   }
+  /** Draws the first \a count rooms with one sample, in the light of lamps with a size. */
+  Leaks leaks_of_sizes(unsigned count) const
+  {
+    Leaks leaks;
+    for (unsigned number = 0; number < count; number++) {
+      Room room(number);
+      if (room.outside != Outside::World) {
+        room.set_size();
+        add(leaks, room, 1, 0);
+      }
+    }
+    return leaks;
+  }
   /** Draws the first \a count rooms in a world with one sample, every second one above a large ground. */
   Leaks leaks_of_one_sample(unsigned count) const
   {
@@ -457,6 +470,15 @@ TEST_F(ClosedRoomsGpuTest, SurfaceThatLayersDoNotShowHasTheSameEdges)
   };
   const double light = mean(picture(keep, blended));
   EXPECT_NEAR(light, mean(picture([](scene::Node &node) { node.casts_shadow = false; }, blended)), 1e-3 * light);
+}
+
+/** Where a wall hides a part of the lamp from its own front, lookups for that part are outside of the room. */
+TEST_F(ClosedRoomsGpuTest, LampsWithASizeGiveLittleLightInOneSample)
+{
+  const Leaks leaks = leaks_of_sizes(room_pairs);
+  EXPECT_EQ(leaks.pictures, 20);
+  // Measured: 0.25, 9e-3. With lookups for all of the lamp, also below the horizon: 0.6, 6.2e-2.
+  expect_dark(leaks, 0.4, 2e-2);
 }
 
 /** Penumbrae of one sample look up texels at offsets, some of which are beyond the walls. */
