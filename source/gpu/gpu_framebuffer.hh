@@ -29,7 +29,10 @@ struct Attachment {
 
 struct FramebufferDesc {
   std::string name;
-  /** At most Limits::color_attachment_max. All attachments must have the same size. */
+  /**
+   * At most Limits::color_attachment_max. All attachments must have the same size. Colours that a program writes and
+   * the framebuffer lacks are discarded.
+   */
   std::vector<Attachment> colors;
   Attachment depth;
 };

@@ -512,6 +512,12 @@ VkBool32 VKAPI_PTR VulkanContext::receive_message(VkDebugUtilsMessageSeverityFla
                                                   VkDebugUtilsMessageTypeFlagsEXT /*types*/,
                                                   const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
 {
+  // A framebuffer may have fewer colours than a program writes. Vulkan discards these values, which later versions of
+  // the layers warn of.
+  constexpr std::string_view unused_color = "Undefined-Value-ShaderOutputNotConsumed-DynamicRendering";
+  if (data->pMessageIdName && data->pMessageIdName == unused_color) {
+    return VK_FALSE;
+  }
   // Exceptions must not propagate through the driver, so messages are stored until check_messages().
   auto *context = static_cast<VulkanContext *>(user);
   const std::scoped_lock lock(context->messages_mutex_);
