@@ -292,7 +292,7 @@ void VulkanContext::destroy()
     vk.vkDestroyDevice(device, nullptr);
   }
   for (const std::string &message : take_messages()) {
-    sink_(message);
+    sink_(fmt::format("the validation layers report: {}", message));
   }
   if (messenger_ != VK_NULL_HANDLE) {
     instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_,
