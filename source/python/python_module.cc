@@ -311,17 +311,16 @@ void add_ids(Renderer &renderer, std::span<const glm::vec4> normal, glm::ivec2 s
   });
 }
 
-py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
-                const std::optional<Thing<scene::Node>> &camera, const py::object &progress)
+/** The sources of layers. \throws py::value_error if Renderer.layers returns none of a name */
+std::set<eevee::LayerSource> layer_sources(const std::vector<std::string> &names)
 {
-  using eevee::LayerSource;
   std::vector<std::string_view> known;
   for (const eevee::PictureLayer &layer : eevee::picture_layers) {
     if (is_array(layer)) {
       known.push_back(layer.name);
     }
   }
-  std::set<LayerSource> sources;
+  std::set<eevee::LayerSource> sources;
   for (const std::string &name : names) {
     const auto layer = std::ranges::find(eevee::picture_layers, name, &eevee::PictureLayer::name);
     if (layer == eevee::picture_layers.end() || !is_array(*layer)) {
@@ -329,14 +328,15 @@ py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
     }
     sources.insert(layer->source);
   }
-  const LayerRequest request{.surfaces = eevee::surface_request(names),
-                             .has_light = sources.contains(LayerSource::Lamp),
-                             .has_emission = sources.contains(LayerSource::Emission),
-                             .has_world = sources.contains(LayerSource::World)};
+  return sources;
+}
+
+/** Arrays by the names of \a drawn. Takes the pixels from it. */
+py::dict layer_arrays(Renderer &renderer, const std::vector<std::string> &names,
+                      const std::set<eevee::LayerSource> &sources, Layers &drawn)
+{
+  using eevee::LayerSource;
   const glm::ivec2 size_px = renderer.size_px();
-  Layers drawn = drawn_by(renderer, camera, progress, [&](const scene::PlacedCamera &placed, const auto &report) {
-    return renderer.render_layers(placed, {.progress = report}, request);
-  });
   py::dict arrays;
   if (sources.contains(LayerSource::Ids)) {
     add_ids(renderer, drawn.surfaces.normal, size_px, arrays);
@@ -377,6 +377,21 @@ py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
     }
   }
   return arrays;
+}
+
+py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
+                const std::optional<Thing<scene::Node>> &camera, const py::object &progress)
+{
+  using eevee::LayerSource;
+  const std::set<LayerSource> sources = layer_sources(names);
+  const LayerRequest request{.surfaces = eevee::surface_request(names),
+                             .has_light = sources.contains(LayerSource::Lamp),
+                             .has_emission = sources.contains(LayerSource::Emission),
+                             .has_world = sources.contains(LayerSource::World)};
+  Layers drawn = drawn_by(renderer, camera, progress, [&](const scene::PlacedCamera &placed, const auto &report) {
+    return renderer.render_layers(placed, {.progress = report}, request);
+  });
+  return layer_arrays(renderer, names, sources, drawn);
 }
 
 /** Each message of these errors names the object or file and the reason. */

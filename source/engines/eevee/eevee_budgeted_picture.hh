@@ -54,7 +54,8 @@ struct BudgetReport {
  * set-up of a sample is divided into its depth and parts of shadows: layers, or rows of large layers. The layers of one
  * exponential shadow are drawn in one call.
  *
- * Each call waits for the device, whose time it measures. One viewport, one object, the device's thread, no recording.
+ * Each call waits for the device, whose time it measures. Use one object for each viewport, on the device's thread and
+ * not during a recording.
  */
 class BudgetedPicture {
  public:
