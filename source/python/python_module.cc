@@ -219,7 +219,10 @@ py::tuple refine(Renderer &renderer, double seconds, const std::optional<Thing<s
   auto [pixels, is_complete] = drawn_by(
       renderer, camera, py::none(),
       [&](const scene::PlacedCamera &placed, const auto & /*report*/) { return renderer.refine(placed, seconds); });
-  return py::make_tuple(picture_array(std::move(pixels), size_px), is_complete);
+  if (!pixels.empty()) {
+    renderer.refined = picture_array(std::move(pixels), size_px);
+  }
+  return py::make_tuple(renderer.refined, is_complete);
 }
 
 constexpr std::array<std::string_view, 3> encoding_words = {"linear", "display", "srgb"};
@@ -499,7 +502,8 @@ void define_drawing(py::module_ &module, py::class_<Renderer, std::shared_ptr<Re
       "refine", &refine, py::arg("seconds"), py::arg("camera") = py::none(),
       "For viewports: the picture within about this time, 0.0001 to 10 s, and whether it is complete. After a "
       "change, the first call draws a whole picture, in a lower resolution and with smaller shadows if the time "
-      "asks for it; later calls refine it. The complete one equals that of render().");
+      "asks for it; later calls refine it, and return the same array as long as it has not changed. The complete one "
+      "equals that of render().");
   renderer.def(
       "draw", &draw, py::arg("seconds"), py::arg("framebuffer"), py::arg("framebuffer_size"),
       py::arg("rectangle") = py::none(), py::arg("camera") = py::none(), py::kw_only(), py::arg("encoding") = "display",

@@ -90,6 +90,8 @@ class SceneRenderer {
    * picture is complete
    */
   bool draw_within(double budget_seconds, const scene::PlacedCamera &camera, const draw::Target &target = {});
+  /** Write the picture of the last draw_within to \a target. \throws gpu::Error, also if there is none */
+  void write_shown(const draw::Target &target);
   /** The report of the last draw_within. Before the first, all members have their defaults. */
   [[nodiscard]] const BudgetReport &budget_report() const
   {
