@@ -53,14 +53,8 @@ static void add_settings(nlohmann::json &values, const Settings &settings)
   });
 }
 
-nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &settings, const scene::Scene &scene,
-                       const scene::Camera &camera, const RenderResult &result, const Chooser *chooser)
+static nlohmann::json frames_json(const RenderResult &result)
 {
-  nlohmann::json values = nlohmann::json::object();
-  add_settings(values, settings);
-  add_settings(values, settings.shadow);
-  add_settings(values, options.display());
-  add_settings(values, options.import_options());
   nlohmann::json frames = nlohmann::json::array();
   for (std::size_t i = 0; i < result.frame_seconds.size(); i++) {
     nlohmann::json steps = nlohmann::json::object();
@@ -74,6 +68,31 @@ nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &sett
                       {"faces_skipped", result.frame_shadows[i].faces_skipped},
                       {"caster_draws", result.frame_shadows[i].caster_draws}});
   }
+  return frames;
+}
+
+static nlohmann::json counters_json(const gpu::Counters &c)
+{
+  return {{"passes", c.passes},
+          {"draws", c.draws},
+          {"instances", c.instances},
+          {"triangles", c.triangles},
+          {"shader_binds", c.shader_binds},
+          {"shaders_made", c.shaders_made},
+          {"shaders_from_cache", c.shaders_from_cache},
+          {"pipelines_made", c.pipelines_made},
+          {"textures_made", c.textures_made},
+          {"upload_bytes", c.upload_bytes}};
+}
+
+nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &settings, const scene::Scene &scene,
+                       const scene::Camera &camera, const RenderResult &result, const Chooser *chooser)
+{
+  nlohmann::json values = nlohmann::json::object();
+  add_settings(values, settings);
+  add_settings(values, settings.shadow);
+  add_settings(values, options.display());
+  add_settings(values, options.import_options());
   nlohmann::json made = nlohmann::json::array();
   nlohmann::json left_out = nlohmann::json::array();
   for (const eevee::FramePart &part : result.report.parts) {
@@ -81,7 +100,6 @@ nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &sett
   }
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), result.report.warnings.begin(), result.report.warnings.end());
-  const gpu::Counters &c = result.counters;
   return {{"program", "gnomon " GNOMON_VERSION},
           {"scene", options.scene},
           {"output", options.output},
@@ -95,23 +113,13 @@ nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &sett
           {"device_seconds", result.device_seconds},
           {"sync_seconds", result.sync_seconds},
           {"frame_seconds", result.frame_seconds},
-          {"frames", frames},
+          {"frames", frames_json(result)},
           {"skipped_frames", result.skipped_frame_count},
           {"layer_seconds", result.layer_seconds},
           {"output_seconds", result.output_seconds},
           {"total_seconds", result.total_seconds},
           {"non_finite", result.non_finite_count},
-          {"counters",
-           {{"passes", c.passes},
-            {"draws", c.draws},
-            {"instances", c.instances},
-            {"triangles", c.triangles},
-            {"shader_binds", c.shader_binds},
-            {"shaders_made", c.shaders_made},
-            {"shaders_from_cache", c.shaders_from_cache},
-            {"pipelines_made", c.pipelines_made},
-            {"textures_made", c.textures_made},
-            {"upload_bytes", c.upload_bytes}}},
+          {"counters", counters_json(result.counters)},
           {"memory_bytes", result.memory_bytes},
           {"made", made},
           {"left_out", left_out},

@@ -37,7 +37,7 @@ using CullingPlanes = std::array<glm::vec4, 6>;
 /** Whether a sphere may be inside of all \a planes. Spheres outside near an edge may return true. */
 [[nodiscard]] bool touches(const CullingPlanes &planes, const CullingVolume &volume);
 
-/** The radius and the rounding error of the height of the centre; infinite: the volume is never culled. Metres. */
+/** Radius plus the rounding error of the centre's height above a plane, metres. Infinite: never culled. */
 [[nodiscard]] float culling_reach(const CullingVolume &volume);
 
 /**
@@ -66,14 +66,14 @@ using ObjectIndex = std::uint32_t;
 class ObjectSet {
  public:
   ObjectSet() = default;
-  /** \a flags: by index, not 0 for the objects of the set. Other indices are not in the set. */
+  /** \a flags: indexed by ObjectIndex; not 0: the object is in the set. Objects beyond the end are not. */
   explicit ObjectSet(std::vector<std::uint8_t> flags);
 
   [[nodiscard]] bool contains(ObjectIndex object) const
   {
     return flags_ && object < flags_->size() && (*flags_)[object] != 0;
   }
-  /** Greater than all indices in the set; 0: it is empty. */
+  /** The largest index in the set plus 1. 0: the set is empty. */
   [[nodiscard]] ObjectIndex index_end() const
   {
     return flags_ ? ObjectIndex(flags_->size()) : 0;

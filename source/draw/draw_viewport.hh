@@ -86,10 +86,9 @@ class Viewport {
   }
   static constexpr int no_rows_max = std::numeric_limits<int>::max();
   /**
-   * Draw what a sample needs before its rows in parts, too: a draw with 0 rows draws at most this number of set-up
-   * units. A *set-up unit* is a piece of the work before the rows of a sample. The engine defines its size: eevee's is
-   * one layer of a shadow, or some rows of a large layer; its depth pass is no unit, and belongs to the first part. No
-   * limit at first. \pre \a units is at least 0
+   * Divide the set-up of a sample, which is the work before its rows, into parts, too: a draw with 0 rows draws at most
+   * \a units set-up units. The engine defines a *set-up unit*: eevee's is one layer of a shadow, or some rows of a
+   * large layer. Its depth pass is no unit, and belongs to the first part. No limit at first. \pre units >= 0
    */
   void set_setup_max(int units)
   {
@@ -106,7 +105,7 @@ class Viewport {
   {
     return setup_count_;
   }
-  /** Set-up units that the sample that has begun still needs before its rows. 0: none, or no sample has begun. */
+  /** Set-up units that are left of the sample that has begun. 0: none, or no sample has begun. */
   [[nodiscard]] int setup_left() const
   {
     return next_row_ ? setup_left_ : 0;
@@ -174,7 +173,7 @@ class Viewport {
   {
     is_moving_ = is_moving;
   }
-  /** Whether the samples are of \a view, by \a engines. */
+  /** Whether the drawn samples show \a view, and \a engines drew them. */
   [[nodiscard]] bool is_of(std::span<Engine *const> engines, const View &view) const;
   /** Increased whenever the picture is started again. */
   [[nodiscard]] std::uint64_t restart_count() const

@@ -31,7 +31,7 @@ class BackgroundImport {
   {
     return path_;
   }
-  /** The part that is done, in [0, 1]. It never decreases. */
+  /** The fraction that is done, in [0, 1]. It never decreases. */
   [[nodiscard]] float progress() const
   {
     return progress_;

@@ -26,7 +26,7 @@ struct ExportError : std::runtime_error {
  *
  * A node that shows the deformed mesh of another node is read with joints of its own below it, because glTF ignores the
  * transform of a node with a skin. A mesh that does not fit its rest shape (scene::fault_of), or whose node was
- * removed, is written as it stands.
+ * removed, is written in its current shape.
  *
  * Not written: things that no node uses, meshes without triangles, references to removed things, and the camera and
  * lamp that the importer added to a file without one, unless they were edited; the studio of

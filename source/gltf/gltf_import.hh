@@ -15,11 +15,11 @@ namespace gnomon::gltf {
 
 /** The units of the numbers of lamps of KHR_lights_punctual. */
 enum class LampUnits {
-  /** Candela and lux, as the extension says. A file that looks as if it meant Raw has a warning. */
+  /** Candela and lux, as the extension says. The import warns of a file that looks like Raw. */
   Lumen,
   /** W/sr and W/m², which exporters call "unitless". */
   Raw,
-  /** Raw if the file looks like it, with a warning, otherwise Lumen. */
+  /** Raw, with a warning, if the file looks like Raw; otherwise Lumen. */
   Auto,
 };
 
@@ -55,10 +55,10 @@ struct ImportCancelled : ImportError {
 };
 
 /**
- * Takes the part of an import that is done, in [0, 1], which never decreases; the last call has 1. Returns false to end
- * the import.
+ * Receives the fraction of an import that is done, in [0, 1]. It never decreases, and is 1 in the last call. Returns
+ * false to end the import.
  */
-using ReportProgress = std::function<bool(float part)>;
+using ReportProgress = std::function<bool(float fraction)>;
 
 /**
  * Reads the equirectangular picture of a world from a file, which is regular and at most 4 GiB large. Throws an
@@ -69,14 +69,15 @@ using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::pat
 struct ImportOptions {
   std::string variant{};
   /**
-   * Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. After
-   * the reduction an edge may have 16384 texels. Before it, an image may have 2^28 texels, and all together 2^32.
-   * Images beyond are replaced by stand-ins, with a warning.
+   * Most texels along an edge of an image of a material; larger images are reduced (scene::reduced). 0: no limit.
+   * Images are replaced by stand-ins, with a warning, if an edge has more than 16384 texels after the reduction, or
+   * before it one image has more than 2^28 texels or all together have more than 2^32.
    */
   std::uint32_t texture_size_max = 0;
   /**
-   * Most bytes of all images, with 4 for each texel after the reduction: 32 images of 4096x4096. A few kilobytes may be
-   * compressed texels of gigabytes. Images beyond are replaced by stand-ins, with a warning.
+   * Most bytes of all images, at 4 bytes for each texel after the reduction; the default is 32 images of 4096x4096. It
+   * is needed because a file of kilobytes may decompress to gigabytes. Images beyond the limit are replaced by
+   * stand-ins, with a warning.
    */
   std::size_t image_bytes_max = std::size_t(1) << 31U;
   /**
@@ -85,8 +86,9 @@ struct ImportOptions {
    */
   std::size_t element_count_max = std::size_t(1) << 28U;
   /**
-   * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
-   * below it, after links are resolved. The scene's own file may be elsewhere. Empty: files may be anywhere.
+   * For scenes from untrusted sources: buffers, images, pictures of worlds and surface functions are read only from
+   * files below this folder, after links are resolved. The scene's own file may be elsewhere. Empty: files may be
+   * anywhere.
    */
   std::filesystem::path only_below{};
   /** A file looks raw if it has no world and no other lamps, and all its lamps are far too dim to be seen. */
@@ -99,7 +101,7 @@ struct ImportOptions {
    */
   ReportProgress progress{};
 
-  /** The settings of an import. Members that only a host sets have no row. */
+  /** Visits the rows of all members but those that only a host sets. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };

@@ -26,12 +26,12 @@ struct Limits {
   int color_attachment_max = 8;
   /** Largest SamplerDesc::anisotropy; 1 where the device has none. */
   int anisotropy_max = 16;
-  /** The driver draws on the CPU. Mesa's takes the time of each texel under a footprint for an anisotropic lookup. */
+  /** The driver draws on the CPU. In Mesa's, the time of an anisotropic lookup grows with the texels that it covers. */
   bool is_software = false;
   /**
-   * Vertices are moved to a grid with 2 to the power of this cells along a pixel's edge, and the values that are
-   * interpolated between them moves along. Read of devices of Vulkan, of which SwiftShader has 4; those of OpenGL are
-   * taken to have 8, which is common.
+   * The rasteriser moves each vertex, with the values that are interpolated from it, to a grid with 2^subpixel_bits
+   * cells along a pixel's edge. Vulkan: read from the device; SwiftShader has 4. OpenGL: 8, which is common, is
+   * assumed.
    */
   int subpixel_bits = 8;
   /** Alignment in bytes of BufferRange::offset_bytes, for uniform and storage blocks. */

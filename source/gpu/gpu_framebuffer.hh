@@ -29,7 +29,10 @@ struct Attachment {
 
 struct FramebufferDesc {
   std::string name;
-  /** At most Limits::color_attachment_max. All attachments must have the same size. */
+  /**
+   * At most Limits::color_attachment_max. All attachments must have the same size. Colours that a program writes and
+   * the framebuffer lacks are discarded.
+   */
   std::vector<Attachment> colors;
   Attachment depth;
 };
@@ -100,7 +103,7 @@ enum class LoadAction : std::uint8_t {
 enum class StoreAction : std::uint8_t { Store, DontCare };
 
 /**
- * Depths of triangles get an addition: slope * m + constant * r. m is the largest change of the triangle's depth
+ * Added to the depths of a triangle: slope * m + constant * r. m is the largest change of the triangle's depth
  * from one pixel to the next, in x or in y. r is the smallest difference of depths that the format has near the
  * triangle's largest depth: of Depth32F, that number's last digit (OpenGL 4.5, 14.6.5). Depth is reversed, therefore
  * negative values move away from the view.

@@ -30,8 +30,7 @@ enum class Format : std::uint8_t {
   Depth32F,
   /** The same with steps of 1 / 65535. Use it only where the error of half a step is accounted for. */
   Depth16,
-  /** That of a texture of the host, which can only be looked up. A lookup returns the values that the format stands
-     for. */
+  /** The format of a HostTexture, which shaders can only look up. A lookup returns normalised values or floats. */
   Host,
 };
 

@@ -219,7 +219,10 @@ py::tuple refine(Renderer &renderer, double seconds, const std::optional<Thing<s
   auto [pixels, is_complete] = drawn_by(
       renderer, camera, py::none(),
       [&](const scene::PlacedCamera &placed, const auto & /*report*/) { return renderer.refine(placed, seconds); });
-  return py::make_tuple(picture_array(std::move(pixels), size_px), is_complete);
+  if (!pixels.empty()) {
+    renderer.refined = picture_array(std::move(pixels), size_px);
+  }
+  return py::make_tuple(renderer.refined, is_complete);
 }
 
 constexpr std::array<std::string_view, 3> encoding_words = {"linear", "display", "srgb"};
@@ -311,17 +314,16 @@ void add_ids(Renderer &renderer, std::span<const glm::vec4> normal, glm::ivec2 s
   });
 }
 
-py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
-                const std::optional<Thing<scene::Node>> &camera, const py::object &progress)
+/** The sources of layers. \throws py::value_error if Renderer.layers returns none of a name */
+std::set<eevee::LayerSource> layer_sources(const std::vector<std::string> &names)
 {
-  using eevee::LayerSource;
   std::vector<std::string_view> known;
   for (const eevee::PictureLayer &layer : eevee::picture_layers) {
     if (is_array(layer)) {
       known.push_back(layer.name);
     }
   }
-  std::set<LayerSource> sources;
+  std::set<eevee::LayerSource> sources;
   for (const std::string &name : names) {
     const auto layer = std::ranges::find(eevee::picture_layers, name, &eevee::PictureLayer::name);
     if (layer == eevee::picture_layers.end() || !is_array(*layer)) {
@@ -329,14 +331,15 @@ py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
     }
     sources.insert(layer->source);
   }
-  const LayerRequest request{.surfaces = eevee::surface_request(names),
-                             .has_light = sources.contains(LayerSource::Lamp),
-                             .has_emission = sources.contains(LayerSource::Emission),
-                             .has_world = sources.contains(LayerSource::World)};
+  return sources;
+}
+
+/** Arrays by the names of \a drawn. Takes the pixels from it. */
+py::dict layer_arrays(Renderer &renderer, const std::vector<std::string> &names,
+                      const std::set<eevee::LayerSource> &sources, Layers &drawn)
+{
+  using eevee::LayerSource;
   const glm::ivec2 size_px = renderer.size_px();
-  Layers drawn = drawn_by(renderer, camera, progress, [&](const scene::PlacedCamera &placed, const auto &report) {
-    return renderer.render_layers(placed, {.progress = report}, request);
-  });
   py::dict arrays;
   if (sources.contains(LayerSource::Ids)) {
     add_ids(renderer, drawn.surfaces.normal, size_px, arrays);
@@ -377,6 +380,21 @@ py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
     }
   }
   return arrays;
+}
+
+py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
+                const std::optional<Thing<scene::Node>> &camera, const py::object &progress)
+{
+  using eevee::LayerSource;
+  const std::set<LayerSource> sources = layer_sources(names);
+  const LayerRequest request{.surfaces = eevee::surface_request(names),
+                             .has_light = sources.contains(LayerSource::Lamp),
+                             .has_emission = sources.contains(LayerSource::Emission),
+                             .has_world = sources.contains(LayerSource::World)};
+  Layers drawn = drawn_by(renderer, camera, progress, [&](const scene::PlacedCamera &placed, const auto &report) {
+    return renderer.render_layers(placed, {.progress = report}, request);
+  });
+  return layer_arrays(renderer, names, sources, drawn);
 }
 
 /** Each message of these errors names the object or file and the reason. */
@@ -484,7 +502,8 @@ void define_drawing(py::module_ &module, py::class_<Renderer, std::shared_ptr<Re
       "refine", &refine, py::arg("seconds"), py::arg("camera") = py::none(),
       "For viewports: the picture within about this time, 0.0001 to 10 s, and whether it is complete. After a "
       "change, the first call draws a whole picture, in a lower resolution and with smaller shadows if the time "
-      "asks for it; later calls refine it. The complete one equals that of render().");
+      "asks for it; later calls refine it, and return the same array as long as it has not changed. The complete one "
+      "equals that of render().");
   renderer.def(
       "draw", &draw, py::arg("seconds"), py::arg("framebuffer"), py::arg("framebuffer_size"),
       py::arg("rectangle") = py::none(), py::arg("camera") = py::none(), py::kw_only(), py::arg("encoding") = "display",

@@ -211,7 +211,15 @@ bool Renderer::draw(const scene::PlacedCamera &camera, double seconds, const dra
 
 std::pair<std::vector<glm::vec4>, bool> Renderer::refine(const scene::PlacedCamera &camera, double seconds)
 {
-  gpu::Device &device = device_->use();
+  const bool is_complete = draw(camera, seconds, {});
+  eevee::SceneRenderer &renderer = state_->renderer;
+  if (!renderer.budget_report().is_new) {
+    return {{}, is_complete};
+  }
+  if (renderer.budget_report().kind != eevee::BudgetReport::Kind::Preview) {
+    return {renderer.read_picture(), is_complete};
+  }
+  gpu::Device &device = renderer.viewport().device();
   const glm::ivec2 size = size_px();
   std::optional<draw::TargetTexture> &shown = state_->shown;
   if (!shown || glm::ivec2(shown->texture().desc().width, shown->texture().desc().height) != size) {
@@ -219,7 +227,7 @@ std::pair<std::vector<glm::vec4>, bool> Renderer::refine(const scene::PlacedCame
   }
   draw::Target target = shown->target();
   target.encoding = draw::Encoding::SceneLinear;
-  const bool is_complete = draw(camera, seconds, target);
+  renderer.write_shown(target);
   return {gpu::read_as<glm::vec4>(device, shown->texture()), is_complete};
 }
 

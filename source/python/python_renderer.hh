@@ -105,9 +105,12 @@ class Renderer {
   Layers render_layers(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits, const LayerRequest &request);
   /**
    * The picture of \a camera within \a seconds: at once after a change, in a lower quality if the time asks for it, and
-   * better with each call. Called as render(). \return the picture and whether it is complete \throws gpu::Error
+   * better with each call. Called as render(). \return the picture, empty if it is that of the last call, and whether
+   * it is complete \throws gpu::Error
    */
   std::pair<std::vector<glm::vec4>, bool> refine(const scene::PlacedCamera &camera, double seconds);
+  /** The array of the last refine(), which its next call returns again if the picture is the same. */
+  py::object refined = py::none();
   /** As refine(), into \a target. \return whether the picture is complete */
   bool draw(const scene::PlacedCamera &camera, double seconds, const draw::Target &target);
   [[nodiscard]] Report report();
@@ -131,7 +134,7 @@ class Renderer {
     /** Outlives the renderer. */
     ScenePtr scene;
     eevee::SceneRenderer renderer;
-    /** The target of refine(), in the size of the viewport. */
+    /** The target of the previews of refine(), in the size of the viewport. */
     std::optional<draw::TargetTexture> shown{};
   };
 

@@ -344,13 +344,9 @@ scene::PlacedCamera camera_at(const ScenePtr &scene, const std::optional<Thing<N
                                 : fmt::format("scene '{}': has no camera", scene->scene.path));
 }
 
-void define_scene(py::module_ &module)
+/** Define the classes of what a scene has. */
+static void define_things(py::module_ &module)
 {
-  define_enums(module);
-  SceneClass type(
-      module, "Scene",
-      "Nodes, meshes, materials, textures, lamps and cameras. World space is right-handed, in metres.\n\n"
-      "Things are handles: their properties read and edit the scene, and raise StaleHandle once the thing is removed.");
   define_thing(module, "Lamp", "A lamp. It shines along the -Z axis of the nodes that have it.", lamp_fields);
   define_thing(module, "SurfaceFunction", "A function in GLSL that edits the surface of the materials that name it.",
                surface_function_fields);
@@ -374,7 +370,16 @@ void define_scene(py::module_ &module)
                                             parent ? handle_of(node.scene, *parent) : scene::Handle<Node>());
           },
           "A Node, or None for a root. A change keeps parent_from_node.");
+}
 
+void define_scene(py::module_ &module)
+{
+  define_enums(module);
+  SceneClass type(
+      module, "Scene",
+      "Nodes, meshes, materials, textures, lamps and cameras. World space is right-handed, in metres.\n\n"
+      "Things are handles: their properties read and edit the scene, and raise StaleHandle once the thing is removed.");
+  define_things(module);
   type.def(py::init<>(), "A scene without content.");
   for (const char *name : {"__copy__", "__deepcopy__"}) {
     type.def(name, [](const ScenePtr &scene, const py::args & /*memo*/) {

@@ -13,7 +13,7 @@ namespace gnomon::render_scene {
 struct HostChanges {
   /** Their content may have changed. */
   bool content = false;
-  /** Also their names, layouts or sizes, so that passes must be built again. */
+  /** Their names, layouts or sizes may have changed, too, so that passes must be built again. */
   bool resources = false;
 };
 
@@ -60,13 +60,13 @@ class HostResources {
     const auto found = current_.find(handle);
     return found == current_.end() ? nullptr : &found->second.resource;
   }
-  /** Another number after each set(); 0: the thing has no resource of the host. */
+  /** Changes with each set() that was applied. 0: the thing has no resource of the host. */
   [[nodiscard]] std::uint64_t content_revision(scene::Handle<Thing> handle) const
   {
     const auto found = current_.find(handle);
     return found == current_.end() ? 0 : found->second.content_revision;
   }
-  /** Another number after each set() with another resource; 0: the thing has no resource of the host. */
+  /** Changes with each applied set() of another resource. 0: the thing has no resource of the host. */
   [[nodiscard]] std::uint64_t resource_revision(scene::Handle<Thing> handle) const
   {
     const auto found = current_.find(handle);

@@ -50,6 +50,8 @@ struct RenderObject {
  *
  * The device uses single-precision coordinates relative to origin_ws(). The matrices, bounds, lamps and cameras that
  * this class returns are relative to this origin. Engines call this space world space.
+ *
+ * Threads: one thread at a time uses this object. No thread may edit the scene meanwhile.
  */
 class RenderScene {
  public:

@@ -105,7 +105,7 @@ class Scene {
   std::optional<World> default_world{};
   /** Import warnings. Each names the element and the reason. */
   std::vector<std::string> warnings{};
-  /** Those of the warnings that name a limit of the import: the picture lacks something that the file has. */
+  /** The warnings that name a limit of the import: because of it, the picture lacks something that the file has. */
   std::vector<std::string> limits{};
   /** Played by pose(). */
   std::vector<Animation> animations{};
@@ -169,7 +169,7 @@ class Scene {
   [[nodiscard]] Handle<Node> first_child(Handle<Node> node) const;
   [[nodiscard]] Handle<Node> next_sibling(Handle<Node> node) const;
 
-  /** Revision of the last edit; that of the construction or assignment of the scene before the first. Above 0. */
+  /** Revision of the last edit, or of the construction or assignment of the scene if that is later. Above 0. */
   [[nodiscard]] Revision revision() const
   {
     return first_revision_.or_later(revision_);
@@ -204,9 +204,9 @@ class Scene {
   /**
    * Sets a thing's value. \throws StaleHandle or InvalidEdit; the scene is then unchanged.
    *
-   * A mesh in deformed_meshes is edited as it stands: its rest shape changes so that the current joints and weights
-   * deform it to \a mesh. With another number of positions, it no longer fits its rest shape; pose() then throws until
-   * the host replaces the entry of deformed_meshes, or removes it.
+   * For a mesh in deformed_meshes, \a mesh is the deformed shape: the rest shape changes so that the current joints and
+   * weights deform it to \a mesh. With another number of positions, it no longer fits its rest shape; pose() then
+   * throws until the host replaces the entry of deformed_meshes, or removes it.
    */
   void replace(Handle<Mesh> handle, Mesh mesh);
   void replace(Handle<Image> handle, Image image);
@@ -255,15 +255,15 @@ class Scene {
   void set_parent(Handle<Node> node, Handle<Node> parent);
 
   /**
-   * Adds a thing again that was removed, under its old handle, so that all that names it has it again. \a value may be
-   * another value than before. \throws InvalidEdit if the value is invalid, if the scene never had the thing or has it,
-   * or if another thing has its index: undo additions that followed the removal first. The scene is then unchanged.
+   * Adds a removed thing again, with any value, under its old handle. References to it are valid again. \throws
+   * InvalidEdit if the value is invalid, if the scene never had the thing or has it, or if another thing has its index:
+   * undo additions that followed the removal first. The scene is then unchanged.
    */
   template <typename T>
   requires(!std::same_as<T, Node>) void restore(Handle<T> handle, T value);
   /**
-   * The same for a node. It becomes a child of \a parent, before the child \a next, or the last child if \a next is an
-   * invalid handle; a root if \a parent is one. \throws StaleHandle; InvalidEdit if \a next is not a child of \a
+   * Adds a removed node again, as a child of \a parent before the child \a next. If \a next is an invalid handle, it is
+   * the last child; if \a parent is one, it is a root. \throws StaleHandle; InvalidEdit if \a next is not a child of \a
    * parent.
    */
   void restore(Handle<Node> handle, Node node, Handle<Node> parent = {}, Handle<Node> next = {});

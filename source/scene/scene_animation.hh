@@ -122,10 +122,10 @@ struct JointWeights {
 };
 
 /**
- * The rest shape of a mesh that is deformed by morph targets or joints. Only one node uses the mesh; others may show it
- * as it stands. Edits of the mesh change the rest shape (Scene::replace). The CPU deforms
- * the vertices once for each pose with linear blend skinning (glTF 2.0, section 3.7.3). Shadows, culling, picking and
- * the reference renderer read the deformed mesh.
+ * The rest shape of a mesh that is deformed by morph targets or joints. The joints and weights are those of one node;
+ * other nodes may show the deformed mesh, too. Edits of the mesh change the rest shape (Scene::replace). The CPU
+ * deforms the vertices once for each pose with linear blend skinning (glTF 2.0, section 3.7.3). Shadows, culling,
+ * picking and the reference renderer read the deformed mesh.
  */
 struct DeformedMesh {
   Handle<Mesh> mesh{};

@@ -111,7 +111,7 @@ struct Lamp {
 
   bool operator==(const Lamp &) const = default;
 
-  /** All but the shadow's. */
+  /** Visits the rows of all members but `shadow`, which LampShadow has. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -267,19 +267,21 @@ constexpr void LampShadow::for_each_property(Visit &&visit)
                                            .kinds = casting,
                                            .extra_kinds = casting,
                                            .aspect = shadow,
-                                           .sentence = "Nearer casters cast no shadow. Absent: all cast one."}));
-  visit(property(&LampShadow::clip_end, {.name = "shadow_clip_end",
-                                         .key = "clip_end",
-                                         .label = "Clip end",
-                                         .group = settings,
-                                         .unit = "m",
-                                         .min = smallest_length,
-                                         .first = 100,
-                                         .kinds = casting,
-                                         .extra_kinds = casting,
-                                         .aspect = shadow,
-                                         .sentence = "Farther casters, beyond the clip start, cast no shadow. Absent: "
-                                                     "all cast one."}));
+                                           .sentence = "Casters nearer than this cast no shadow. Absent: no "
+                                                       "limit."}));
+  visit(
+      property(&LampShadow::clip_end, {.name = "shadow_clip_end",
+                                       .key = "clip_end",
+                                       .label = "Clip end",
+                                       .group = settings,
+                                       .unit = "m",
+                                       .min = smallest_length,
+                                       .first = 100,
+                                       .kinds = casting,
+                                       .extra_kinds = casting,
+                                       .aspect = shadow,
+                                       .sentence = "Casters farther than this, which is above the clip start, cast no "
+                                                   "shadow. Absent: no limit."}));
   visit(property(
       &LampShadow::exponent,
       {.name = "shadow_exponent",
@@ -352,7 +354,7 @@ struct Camera {
   float aspect = 0.0F;
   float half_width = 1.0F;
   float half_height = 1.0F;
-  /** Distances along the view direction; near > 0 when perspective, far > near. */
+  /** Distances along the view direction, metres. far > near, or 0. Perspective: near > 0. \see the rows */
   float near = 0.1F;
   float far = 0.0F;
   float shift_x = 0.0F;
@@ -422,14 +424,15 @@ constexpr void Camera::for_each_property(Visit &&visit)
                   .is_animated = true,
                   .aspect = lens,
                   .sentence = "Half the height of the frame. Below 0: up and down are exchanged."}));
-  visit(property(&Camera::near,
-                 {.name = "near",
-                  .label = "Near",
-                  .unit = "m",
-                  .min = -number_max,
-                  .path = "znear",
-                  .aspect = lens,
-                  .sentence = "Distance of the near plane; above 0 where perspective. In files at least 0."}));
+  visit(
+      property(&Camera::near,
+               {.name = "near",
+                .label = "Near",
+                .unit = "m",
+                .min = -number_max,
+                .path = "znear",
+                .aspect = lens,
+                .sentence = "Distance of the near plane. Perspective: above 0. A file can have no distance below 0."}));
   visit(property(&Camera::far, {.name = "far",
                                 .label = "Far",
                                 .unit = "m",
@@ -438,7 +441,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                                 .first = 1000,
                                 .path = "zfar",
                                 .aspect = lens,
-                                .sentence = "Distance of the far plane. 0 where perspective: infinite."}));
+                                .sentence = "Distance of the far plane. Perspective: 0 is infinite."}));
   visit(property(&Camera::shift_x, {.name = "shift_x",
                                     .label = "Shift x",
                                     .min = -100,
@@ -532,7 +535,7 @@ struct TextureSlot {
   /** The transform: the image is looked up at `uv_from_mesh * vec3(uv, 1)`. */
   [[nodiscard]] glm::dmat3x2 uv_from_mesh() const;
 
-  /** All but the texture. */
+  /** Visits the rows of all members but `texture`. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -660,7 +663,7 @@ struct Material {
     return transmission > 0.0F && !is_unlit;
   }
 
-  /** All but the texture slots, which texture_inputs has, and the surface function. */
+  /** Visits the rows of all members but `surface_function` and the texture slots, which texture_inputs lists. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -688,7 +691,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                     .label = "Alpha",
                                     .max = 1,
                                     .aspect = unsigned(Coverage),
-                                    .sentence = "Opacity; has an effect by alpha_mode."}));
+                                    .sentence = "Opacity, if alpha_mode uses it."}));
   visit(property(&Material::alpha_mode, {.name = "alpha_mode",
                                          .label = "Alpha mode",
                                          .path = "alphaMode",
@@ -701,7 +704,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                   .path = "alphaCutoff",
                   .is_animated = true,
                   .aspect = unsigned(Coverage),
-                  .sentence = "Mask: the surface is cut out where alpha is below: above 1, everywhere."}));
+                  .sentence = "alpha_mode mask: the surface is cut out where alpha is less. Above 1: everywhere."}));
   visit(property(&Material::metallic, {.name = "metallic",
                                        .label = "Metallic",
                                        .max = 1,
@@ -762,7 +765,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                              .path = "extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor",
                                              .is_animated = true,
                                              .aspect = unsigned(Surface),
-                                             .sentence = "Perceptual."}));
+                                             .sentence = "Perceptual; GGX alpha is its square."}));
   visit(
       property(&Material::coat_normal_scale, {.name = "coat_normal_scale",
                                               .label = "Normal scale",
@@ -789,7 +792,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                               .path = "extensions/KHR_materials_sheen/sheenRoughnessFactor",
                                               .is_animated = true,
                                               .aspect = unsigned(Surface),
-                                              .sentence = "Perceptual."}));
+                                              .sentence = "Perceptual; the sheen's alpha is its square."}));
   visit(property(&Material::anisotropy, {.name = "anisotropy",
                                          .label = "Strength",
                                          .group = anisotropy_group,
@@ -820,7 +823,8 @@ constexpr void Material::for_each_property(Visit &&visit)
        .is_animated = true,
        .aspect = unsigned(Surface),
        .sentence =
-           "Part of the light that enters the base and passes it. 0: opaque. The other values of glass need it."}));
+           "Fraction of the light that enters the base and passes through it. 0: opaque; the other properties of the "
+           "group then have no effect."}));
   visit(property(
       &Material::thickness,
       {.name = "thickness",
@@ -830,7 +834,7 @@ constexpr void Material::for_each_property(Visit &&visit)
        .path = "extensions/KHR_materials_volume/thicknessFactor",
        .is_animated = true,
        .aspect = unsigned(Surface),
-       .sentence = "Length of the light's way inside of the object, object space. 0: a thin wall, no refraction."}));
+       .sentence = "Length of the light's path inside the object, in object space. 0: a thin wall, no refraction."}));
   visit(
       property(&Material::ior, {.name = "ior",
                                 .label = "Index of refraction",
@@ -839,19 +843,18 @@ constexpr void Material::for_each_property(Visit &&visit)
                                 .path = "extensions/KHR_materials_ior/ior",
                                 .aspect = unsigned(Surface),
                                 .sentence = "Index of refraction of the volume. It does not change the reflection."}));
-  visit(
-      property(&Material::attenuation_distance,
-               {.name = "attenuation_distance",
-                .label = "Attenuation",
-                .group = transmission_group,
-                .unit = "m",
-                .min = smallest_length,
-                .zero = "no absorption",
-                .first = 1,
-                .path = "extensions/KHR_materials_volume/attenuationDistance",
-                .is_animated = true,
-                .aspect = unsigned(Surface),
-                .sentence = "Distance after which attenuation_color is left of white light. 0: nothing is absorbed."}));
+  visit(property(&Material::attenuation_distance,
+                 {.name = "attenuation_distance",
+                  .label = "Attenuation",
+                  .group = transmission_group,
+                  .unit = "m",
+                  .min = smallest_length,
+                  .zero = "no absorption",
+                  .first = 1,
+                  .path = "extensions/KHR_materials_volume/attenuationDistance",
+                  .is_animated = true,
+                  .aspect = unsigned(Surface),
+                  .sentence = "Distance after which white light has attenuation_color. 0: nothing is absorbed."}));
   visit(property(&Material::attenuation_color, {.name = "attenuation_color",
                                                 .label = "Attenuation color",
                                                 .group = transmission_group,
@@ -879,7 +882,7 @@ constexpr void Material::for_each_property(Visit &&visit)
                                               .label = "Double-sided",
                                               .path = "doubleSided",
                                               .aspect = unsigned(Coverage),
-                                              .sentence = "false: back faces are not drawn and cast no light."}));
+                                              .sentence = "false: back faces are not drawn and emit no light."}));
 }
 
 /** One of a material's texture slots. */
@@ -978,7 +981,7 @@ struct Node {
   bool receives_shadow = true;
   std::string extras{};
 
-  /** All but the transform and the content. */
+  /** Visits the rows of all members but the transform, the meshes, the lamp and the camera. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -1008,7 +1011,7 @@ constexpr void Node::for_each_property(Visit &&visit)
                                           .sentence = "Whether the node's own meshes receive shadows."}));
 }
 
-/** The kind of a lamp or a camera for Description::kinds. 0: of other things, which are of one kind. */
+/** The kind of a lamp or a camera, as the number of a bit in Description::kinds. Other things: 0. */
 template <typename Thing>
 [[nodiscard]] constexpr unsigned kind_of(const Thing &thing)
 {

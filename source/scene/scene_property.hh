@@ -10,13 +10,13 @@
 #include <type_traits>
 
 /**
- * The type of the rows that describe properties of things (scene_properties.hh) and settings of engines, imports and
- * pictures, which stand beside their types. Checks, files, options, Python, the window and the documentation read the
- * rows, so that a property or a setting is described once.
+ * The type of a row. A row describes one property of a thing (scene_properties.hh) or one setting of an engine, an
+ * import or a picture, and stands beside the type that has the member. Checks, files, options, Python, the window and
+ * the documentation read the rows, so that each property and setting is described once.
  */
 namespace gnomon::scene {
 
-/** The type of a property's values; for one that may be absent, of those that are not. */
+/** The type of a property's value, without std::optional. */
 template <typename Value>
 struct PresentValue {
   using Type = Value;
@@ -36,55 +36,55 @@ inline constexpr double number_max = 1e12;
 /** Greatest intensity, radiance and strength of light. A hundred million of them are finite in float. */
 inline constexpr double light_max = 1e30;
 
-/** A bit for each of \a values of an enumeration. */
+/** A mask in which bit n is set for each of \a values of an enumeration, where n is its number. */
 template <typename... Values>
 [[nodiscard]] constexpr unsigned bits(Values... values)
 {
   return ((1U << unsigned(values)) | ...);
 }
 
-/** The meaning of a property and the values that it may have. Members that are left out have no meaning for the
- * property. */
+/** The meaning of a property and the values that it may have. */
 struct Description {
   /** The member's name, in messages and in Python. */
   std::string_view name;
-  /** In scripts of the window and, after a prefix, in extras of files. Empty: as `name`. */
+  /** Name in scripts of the window and, after a prefix, in extras of files. Empty: `name`. */
   std::string_view key{};
-  /** On the command line, after two dashes. Rows with the same option are set together. Empty: there is none. */
+  /** Name of the option on the command line, after two dashes. It sets all rows with this option. Empty: no option. */
   std::string_view option{};
-  /** A word of the option for a value that is chosen automatically. Empty: there is none. */
+  /** Word of the option for a value that is chosen automatically. Empty: no such word. */
   std::string_view automatic{};
-  /** In the window. Empty: it does not show the property as a row of its own. */
+  /** Label in the window. Empty: the window has no row for the property. */
   std::string_view label{};
-  /** A header that the window shows the property under. */
+  /** Header above the row in the window. Empty: no header. */
   std::string_view group{};
-  /** Unit of the value. Options and the window have degrees for "rad" and MiB for "bytes": shown_unit. */
+  /** Unit of the value. Options and the window show degrees for "rad" and MiB for "bytes". \see shown_unit */
   std::string_view unit{};
   /** The words for false and true, in options, scripts and the window. */
   std::array<std::string_view, 2> switch_words{"off", "on"};
   /** Limits of a number, and of each component of a vector. */
   double min = 0.0;
   double max = number_max;
-  /** The least absolute value of a number that may be negative. */
+  /** Least absolute value of a number that may be negative. 0: no such limit. */
   double least = 0.0;
-  /** Meaning of 0, where it is allowed beside the limits. */
+  /** Meaning of the value 0, which is then allowed beside the limits. Empty: 0 has no special meaning. */
   std::string_view zero{};
-  /** A number that may be absent, or 0 beside the limits, begins with this in the window. */
+  /** First value in the window of a number that was absent, or 0 with the meaning `zero`. */
   double first = 0.0;
-  /** The kinds of a thing that have the property, as bits. 0: all. */
+  /** Mask of the kinds of lamps or cameras that have the property. 0: all kinds. \see kind_of */
   unsigned kinds = 0;
-  /** The kinds for which files have the property as an extra, as bits. */
+  /** Mask of the kinds for which files have the property as an extra. 0: no extra. */
   unsigned extra_kinds = 0;
-  /** Extras have the angle in degrees. */
+  /** Whether the extra is in degrees. The member is in radians. */
   bool is_extra_in_degrees = false;
-  /** Place of the property in glTF, from its material, camera or lamp; empty: glTF has none. */
+  /** Path of the property in glTF, from its material, camera or lamp. Empty: glTF has no such property. */
   std::string_view path{};
-  /** KHR_animation_pointer animates it, by its path. */
+  /** Whether KHR_animation_pointer can animate `path`. */
   bool is_animated = false;
-  /** The aspect of the thing that the property belongs to. */
+  /** Aspect of the thing, as a number, whose revision an edit of the property raises. */
   unsigned aspect = 0;
-  /** Pictures depend on the setting, so that all parts of a picture must have the same value. */
+  /** Whether pictures depend on the setting: parts of one picture must then have the same value. */
   bool makes_picture = true;
+  /** Meaning of the property, for help, documentation and Python. */
   std::string_view sentence{};
 
   [[nodiscard]] constexpr std::string_view key_or_name() const
@@ -155,21 +155,21 @@ struct ShownLimits {
 [[nodiscard]] ShownLimits shown_limits(const Description &description, bool is_whole);
 
 /**
- * The limits as text: "from 0 to 1", "from 1 to 10, or the negative of such a number". \a factor: of the limits, for
- * another unit than that of the value.
+ * The limits as text: "from 0 to 1", "from 1 to 10, or the negative of such a number". \a factor: units of the text in
+ * one unit of the value.
  */
 [[nodiscard]] std::string range_text(const Description &description, double factor = 1.0);
-/** That \a value is out of the limits: the name, the value and the limits. */
+/** Message for a \a value out of the limits, with the name, the value and the limits. */
 [[nodiscard]] std::string range_fault(const Description &description, double value);
 
 /** \a value in the shown unit, as options take it. */
 [[nodiscard]] std::string number_text(const Description &description, double value);
 
-/** The words for the values of an enumeration, in their order: in files, options and scripts. */
+/** Words for the values of an enumeration in files, options and scripts, indexed by the value. */
 template <typename Enum>
 inline constexpr std::array<std::string_view, 0> words{};
 
-/** \a value of the property \a row, as an option takes it. Types of their own have a function text_of. */
+/** \a value of the property \a row, as an option takes it. Classes without a branch here have a text_of(). */
 template <typename Value>
 [[nodiscard]] std::string value_text(const Description &row, const Value &value)
 {
@@ -212,7 +212,7 @@ constexpr void for_each_number(const Value &value, Visit &&visit)
   }
 }
 
-/** Where a number of \a settings is out of its limits: the row's name, the number and the limits. Empty: nowhere. */
+/** The range_fault of the first number of \a settings that is out of its limits. Empty: all are within. */
 template <typename Settings>
 [[nodiscard]] std::string limit_fault(const Settings &settings)
 {
@@ -249,7 +249,7 @@ template <typename T, typename Value>
   return {description, member};
 }
 
-/** A property of a part of a T, to which \a access returns a reference. */
+/** A property whose value is nested in a T. `access` returns a reference to it. */
 template <typename ValueType, typename Access>
 struct PartProperty : Description {
   using Value = ValueType;

@@ -81,9 +81,9 @@ enum class ImageUse {
   Data,
   /** Colours that are encoded as sRGB; alpha has no effect. */
   Color,
-  /** The same of blended surfaces: a texel covers the part alpha, and counts by it in a mean. */
+  /** Colours of blended surfaces, as Color. A texel covers the fraction alpha, which is its weight in a mean. */
   Coverage,
-  /** The same of masked surfaces: a texel covers all or nothing. */
+  /** Colours of masked surfaces, as Color. A texel covers all or nothing. \see MaskCover */
   Mask,
 };
 
@@ -101,9 +101,11 @@ struct Texture {
   static constexpr std::string_view kind_name = "texture";
   enum class Aspect { Image, Sampler, Count };
 
+  /** An invalid or stale handle: the texture is not drawn. */
   Handle<Image> image{};
   TextureWrap wrap_u = TextureWrap::Repeat;
   TextureWrap wrap_v = TextureWrap::Repeat;
+  /** Filters where texels are larger and smaller than pixels. */
   TextureFilter magnified = TextureFilter::Linear;
   TextureFilter minified = TextureFilter::Linear;
   MipFilter mip = MipFilter::Linear;
@@ -165,7 +167,7 @@ struct Mesh {
   enum class Aspect { Name, Shape, Layout, Material, Count };
 
   std::string name{};
-  /** The values of this vector and of the others of vertices must be finite. */
+  /** Metres. The values of this vector and of all others with a value for each position must be finite. */
   std::vector<glm::vec3> positions{};
   /** Unit vectors, one for each position. */
   std::vector<glm::vec3> normals{};

@@ -44,7 +44,7 @@ struct World {
 
   bool operator==(const World &) const = default;
 
-  /** All but the picture. */
+  /** Visits the rows of all members but `picture`. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };

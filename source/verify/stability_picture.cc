@@ -19,9 +19,7 @@ namespace {
 
 constexpr const char *picture_group = "picture";
 
-}  // namespace
-
-void add_picture_cases(std::vector<StabilityCase> &cases)
+void add_sample_cases(std::vector<StabilityCase> &cases)
 {
   const std::vector<double> sizes = {1, 2, 3, 5, 16, 64, 255, 256, 1000, 1024, 1920, 4096, 8191, 8192, 16383, 16384};
   cases.push_back(
@@ -114,6 +112,10 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                      }
                      return worst;
                    })});
+}
+
+void add_display_cases(std::vector<StabilityCase> &cases)
+{
   cases.push_back(case_of({picture_group, "sRGB from denormals to 1", "srgb_encoded", "encoded value", "linear value",
                            log_steps(1.5e-45, 1.0, 180),
                            [](double linear) { return Arguments<float>{.a = glm::vec4(float(linear))}; }}));
@@ -155,6 +157,14 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                        })});
     }
   }
+}
+
+}  // namespace
+
+void add_picture_cases(std::vector<StabilityCase> &cases)
+{
+  add_sample_cases(cases);
+  add_display_cases(cases);
 }
 
 }  // namespace gnomon::verify

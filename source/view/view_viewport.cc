@@ -173,9 +173,14 @@ bool WindowViewport::draw(Document &document, double budget_seconds)
   drawn_view_ = view;
   map_ = PictureMap(view, render_scene.origin_ws(), size_px_);
   overlaid_ = overlays;
+  return redraw(document, budget_seconds, is_synced);
+}
+
+bool WindowViewport::redraw(Document &document, double budget_seconds, bool is_synced)
+{
   is_complete_ = true;
   has_failed_ = true;
-
+  render_scene::RenderScene &render_scene = document.render_scene();
   prepare(render_scene);
   draw::Engine *one = &document.engine(engine);
   if (auto *unlit = dynamic_cast<unlit::Engine *>(one)) {

@@ -202,6 +202,8 @@ class WindowViewport {
   [[nodiscard]] draw::View drawn_view(Document &document) const;
   /** Make the viewport, or give it the size, and clear the canvas. */
   void prepare(render_scene::RenderScene &render_scene);
+  /** Draw for draw(), whatever has changed. \a is_synced: the viewport has the objects of synced_. \return as draw() */
+  bool redraw(Document &document, double budget_seconds, bool is_synced);
   /** Draw with \a used, within the budget if there is one and the engine supports budgets. */
   void draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target);
   /** End a picture that has reached the maximum time. */

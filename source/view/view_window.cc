@@ -170,8 +170,15 @@ void Window::begin_frame(bool waits, double seconds_max)
   if (!pointers_.empty()) {
     const Pointer pointer = pointers_.back();
     pointers_.pop_back();
-    ImGui::GetIO().MousePos = {float(pointer.at_px.x), float(pointer.at_px.y)};
-    ImGui::GetIO().MouseDown[ImGuiMouseButton_Left] = pointer.is_down;
+    ImGuiIO &io = ImGui::GetIO();
+#if IMGUI_VERSION_NUM >= 18700
+    // Later than the event with the real place of the pointer, which the call above has added.
+    io.AddMousePosEvent(float(pointer.at_px.x), float(pointer.at_px.y));
+    io.AddMouseButtonEvent(ImGuiMouseButton_Left, pointer.is_down);
+#else
+    io.MousePos = {float(pointer.at_px.x), float(pointer.at_px.y)};
+    io.MouseDown[ImGuiMouseButton_Left] = pointer.is_down;
+#endif
   }
   ImGui::NewFrame();
 }

@@ -18,6 +18,19 @@ sys.modules["render_gnomon"] = package
 closed = importlib.import_module("render_gnomon.closed")
 lamps = importlib.import_module("render_gnomon.lamps")
 objects = importlib.import_module("render_gnomon.objects")
+# Of Blender, the others need only names and the properties' arguments.
+kinds = ('Bool', 'Enum', 'Float', 'Int', 'String', 'Pointer')
+sys.modules["bpy"] = types.SimpleNamespace(
+    types=types.SimpleNamespace(PropertyGroup=object, Operator=object, Panel=object),
+    props=types.SimpleNamespace(**{f"{kind}Property": lambda **arguments: arguments for kind in kinds}))
+sys.modules["gpu"] = types.ModuleType("gpu")
+sys.modules["gpu_extras"] = types.ModuleType("gpu_extras")
+sys.modules["gpu_extras.presets"] = types.SimpleNamespace(draw_texture_2d=None)
+# They read Blender's things.
+for name in ("cameras", "collect", "world"):
+    sys.modules[f"render_gnomon.{name}"] = types.ModuleType(name)
+settings = importlib.import_module("render_gnomon.settings")
+viewport = importlib.import_module("render_gnomon.viewport")
 
 BOX_TRIANGLES = numpy.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2),
                              (1, 3, 7), (1, 7, 5)])
@@ -82,6 +95,58 @@ class Lamps(unittest.TestCase):
         color, intensity, remarks = lamps.punctual(lamp)
         self.assertEqual((color, remarks), ([1, 0.5, 0.25], []))
         self.assertAlmostEqual(intensity, 40 / (4 * math.pi) * 683)
+
+
+class Settings(unittest.TestCase):
+    def test_without_a_default_have_their_least_value(self):
+        description = types.SimpleNamespace(name="count", label="count", sentence="A number.", type="int | None", words=[], unit="", default=None,
+                                            min=1.0, max=16.0, zero=True)
+        self.assertEqual({key: (type(value), value) for key, value in settings.property_of("count", description).items() if key in ('default', 'min', 'max')},
+                         {'default': (int, 1), 'min': (int, 0), 'max': (int, 16)})
+
+
+class Renderer:
+    """Refines a picture by two samples, each in two calls."""
+
+    size = 1, 1
+    calls = 0
+
+    def __init__(self, device, scene, size):
+        self.pictures = [numpy.zeros(1), numpy.ones(1)]
+
+    def refine(self, seconds, camera):
+        Renderer.calls += 1
+        return self.pictures[Renderer.calls // 3 % 2], Renderer.calls >= 5
+
+    def report(self):
+        return types.SimpleNamespace(sample_count=0, warnings=[], limits=[])
+
+
+class Painter(unittest.TestCase):
+    def test_shows_pictures_that_are_new_and_waits_for_those_of_edits(self):
+        shown = types.SimpleNamespace(camera=types.SimpleNamespace(edit=lambda **_: None), eye=types.SimpleNamespace(), scene=None)
+        viewport.mirror = types.SimpleNamespace(Mirror=lambda gnomon: shown)
+        viewport.settings = types.SimpleNamespace(gnomon=types.SimpleNamespace(
+            Device=object, Renderer=Renderer, CameraKind=types.SimpleNamespace(PERSPECTIVE=0)))
+        published = []
+
+        class Watched(viewport.Painter):
+            def publish(self, **values):
+                published.append((values['picture'][0][0], values['picture'][1], values['shown_count']))
+                super().publish(**values)
+
+        painter = Watched()
+        self.assertEqual(painter.take_shown(60), (None, None, 0))
+        view = types.SimpleNamespace(size=(1, 1), is_perspective=True, camera={}, matrix=None)
+        painter.want(view=view, settings={})
+        with painter.condition:
+            self.assertTrue(painter.condition.wait_for(lambda: len(published) == 3, 60))
+        self.assertEqual((published, Renderer.calls), ([(0, False, 1), (1, False, 1), (1, True, 1)], 5))
+        painter.want(view=view)
+        self.assertEqual(painter.take_shown(60)[0][0][0], 0)
+        self.assertEqual((published[3], painter.is_new), ((0, True, 2), False))
+        painter.end()
+        painter.thread.join()
 
 
 unittest.main(argv=["parts_test"])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Run by scripts/viewport_times in Blender's window: -- ROUNDS. Prints CPU seconds of EEVEE's viewport and of Gnomon's, and their ratios.
+"""Run by scripts/viewport_times in Blender's window: -- ROUNDS. Prints CPU seconds of viewports: of an engine that draws nothing, which
+are Blender's own share, of EEVEE's and of Gnomon's.
 
 A picture is that of the window's framebuffer. The first picture is the first one that is like the engine's own with LIMIT samples.
 """
@@ -20,14 +21,24 @@ from window import run, viewport
 ROUNDS = int(sys.argv[-1])
 FRAMES = 5
 LIMIT = 4
-ENGINES = ('BLENDER_EEVEE', 'GNOMON')
+ENGINES = ('NOTHING', 'BLENDER_EEVEE', 'GNOMON')
 # RMSE of a first picture to that of LIMIT samples.
 FIRST_RMSE = 0.1
-# The last one is Blender's own share: it draws its window once for each of EEVEE's frames, and twice for Gnomon's.
 MEASURES = ('first picture', 'frame, lamp moves', 'frame, view turns', 'redraw of a complete picture')
 pictures = []
 is_read = False
 reading_seconds = 0.0
+
+
+class Nothing(bpy.types.RenderEngine):
+    bl_idname = 'NOTHING'
+    bl_label = "Nothing"
+
+    def view_update(self, context, depsgraph):
+        pass
+
+    def view_draw(self, context, depsgraph):
+        pass
 
 
 def clock():
@@ -67,10 +78,11 @@ def shown():
     """Draws until the picture shows all edits."""
     draw()
     if bpy.context.scene.render.engine == 'GNOMON':
-        painter = viewport.Viewport.all[0].painter
-        while painter.shown_count != painter.wanted_count:
+        drawn = viewport.Viewport.all[0]
+        while drawn.painter.shown_count != drawn.painter.wanted_count:
             time.sleep(0.001)
-        draw()
+        if drawn.shown is not drawn.painter.picture:
+            draw()
 
 
 def rmse(a, b):
@@ -105,7 +117,7 @@ def refined():
                 time.sleep(0.001)
             last = painter.picture
         else:
-            is_complete = len(found) >= LIMIT
+            is_complete = bpy.context.scene.render.engine == 'NOTHING' or len(found) >= LIMIT
     is_read = False
     return found
 
@@ -122,6 +134,7 @@ def frames(edit, show):
 
 
 def steps():
+    bpy.utils.register_class(Nothing)
     scene = bpy.context.scene
     if not bpy.data.filepath:
         bpy.ops.mesh.primitive_plane_add(size=20, location=(0, 0, -1))
@@ -161,11 +174,12 @@ def steps():
                 for name, seconds in zip(MEASURES, (first, moving, turning, redrawing)):
                     own[name].append(seconds)
             yield
-    print(f"  {'CPU seconds, medians':40} {'EEVEE':>8} {'Gnomon':>8} {'ratio':>8}")
+    print(f"  {'CPU seconds, medians':30} {'nothing':>8} {'EEVEE':>8} {'Gnomon':>8} {'ratio':>8} {'without nothing':>16}")
     for name in MEASURES:
-        medians = [statistics.median(times[engine][name]) for engine in ENGINES]
-        ratio = statistics.median(own / other for other, own in zip(*(times[engine][name] for engine in ENGINES)))
-        print(f"  {name:40} {medians[0]:8.3f} {medians[1]:8.3f} {ratio:8.3f}", flush=True)
+        rounds = list(zip(*(times[engine][name] for engine in ENGINES)))
+        nothing, eevee, own = map(statistics.median, zip(*rounds))
+        ratio = statistics.median(gnomon / other for _, other, gnomon in rounds)
+        print(f"  {name:30} {nothing:8.3f} {eevee:8.3f} {own:8.3f} {ratio:8.3f} {(own - nothing) / (eevee - nothing):16.3f}", flush=True)
 
 
 run(steps, 'viewport_times', 3000)

@@ -22,6 +22,13 @@ void *operator new(std::size_t size)
   return counted(std::malloc(size > 0 ? size : 1));
 }
 
+// Sanitizers have one of their own, which does not call the one above.
+void *operator new(std::size_t size, const std::nothrow_t & /*tag*/) noexcept
+{
+  allocation_count++;
+  return std::malloc(size > 0 ? size : 1);
+}
+
 void *operator new(std::size_t size, std::align_val_t alignment)
 {
   const auto align = std::size_t(alignment);

@@ -605,12 +605,13 @@ void set_unusual_state(const HostObjects &objects)
   glDebugMessageCallback(&ignore_message, nullptr);
 }
 
-StateSnapshot::StateSnapshot(const std::vector<StateItem> &table) : table_(table)
+StateSnapshot::StateSnapshot(const std::vector<StateItem> &table, const StateSnapshot *deletions) : table_(table)
 {
   for (const StateItem &item : table) {
+    const bool was_deleted = deletions && deletions->are_deleted_[values_.size()];
     values_.push_back(item.read());
     const double name = values_.back().front();
-    are_deleted_.push_back(item.is_object && name != 0 && !item.is_object(GLuint(name)));
+    are_deleted_.push_back(was_deleted || (item.is_object && name != 0 && !item.is_object(GLuint(name))));
   }
 }
 

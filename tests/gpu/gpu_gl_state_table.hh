@@ -82,7 +82,11 @@ void set_unusual_state(const HostObjects &objects);
 /** Values of a table at one time. */
 class StateSnapshot {
  public:
-  explicit StateSnapshot(const std::vector<StateItem> &table);
+  /**
+   * \a deletions: taken after the host deleted objects that stay bound, whose names are free; later, objects of a
+   * device may have them.
+   */
+  explicit StateSnapshot(const std::vector<StateItem> &table, const StateSnapshot *deletions = nullptr);
   /**
    * "NAME: was 1, is 2" for each item that has changed. The name of an object that was deleted when the snapshot was
    * taken may have become 0.

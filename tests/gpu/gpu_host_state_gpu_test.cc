@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <set>
 
 namespace gnomon::gpu {
@@ -136,13 +137,15 @@ class HostStateGpu : public test::HostContextTest {
   template <typename Action>
   void expect_unchanged(const char *name, Action &&action)
   {
-    const StateSnapshot before(table);
+    const StateSnapshot before(table, deletion_state ? &*deletion_state : nullptr);
     action();
     EXPECT_EQ(before.differences(), std::vector<std::string>()) << name;
     EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << name;
   }
 
   std::vector<StateItem> table;
+  /** \see StateSnapshot::StateSnapshot */
+  std::optional<StateSnapshot> deletion_state;
 };
 
 INSTANTIATE_TEST_SUITE_P(, HostStateGpu,
@@ -257,7 +260,8 @@ TEST_P(HostStateGpu, DeletedNamesThatAreStillBoundAreTolerated)
     else {
       destroy();
     }
-    for (const std::string &name : StateSnapshot(table).deleted()) {
+    deletion_state.emplace(table);
+    for (const std::string &name : deletion_state->deleted()) {
       deleted.insert(name);
     }
     std::unique_ptr<Device> device;
@@ -603,7 +607,8 @@ TEST_P(HostStateGpu, CostOfSaving)
   using Clock = std::chrono::steady_clock;
   const HostObjects objects;
   test::set_unusual_state(objects);
-  HostState state(true);
+  const DeviceNames names;
+  HostState state(true, names);
   constexpr int count = 2000;
   double best = 1e9;
   for (int round = 0; round < 5; round++) {

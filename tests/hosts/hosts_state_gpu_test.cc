@@ -50,9 +50,10 @@ TEST_P(HostsState, NamesThatTheHostHasDeletedAreLeftUnbound)
     }
   }));
   const std::vector<StateItem> table = state_table();
-  EXPECT_GE(StateSnapshot(table).deleted().size(), 100U);
+  const StateSnapshot deletions(table);
+  EXPECT_GE(deletions.deleted().size(), 100U);
   make_host_calls(scene, picture.framebuffer(), [&](const char *name, const std::function<void()> &call) {
-    const StateSnapshot state(table);
+    const StateSnapshot state(table, &deletions);
     call();
     EXPECT_EQ(state.differences(), std::vector<std::string>()) << name;
     EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << name;

@@ -826,9 +826,12 @@ class Pictures(unittest.TestCase):
                 picture, is_complete = renderer.refine(0.05)
                 if is_complete:
                     break
+            # Without a change, it is the same array.
+            self.assertIs(renderer.refine(0.05)[0], picture)
             complete = renderer.render()
             self.assertTrue((picture == complete).all())
             self.assertLess(abs(first.mean() / complete.mean() - 1), 0.05)
+            self.assertIsNot(renderer.refine(0.05)[0], picture)
         with self.assertRaisesRegex(gnomon.DeviceError, "budget"):
             renderer.refine(0.0)
 

@@ -1229,6 +1229,10 @@ TEST(CheckProgram, AMistakeInSpirvHasItsPlace)
                {"i.glsl", declarations + "void g() {\n" + sample + "}\n"}},
          "i.glsl", 7}}) {
     const ProgramCheck check = check_texts(texts, for_target(CheckTarget::Vulkan12));
+    // Versions of glslang without the tree make valid SPIR-V of it.
+    if (check.messages.empty() && !left_out_rules(CheckTarget::Vulkan12).empty()) {
+      continue;
+    }
     ASSERT_EQ(check.messages.size(), 1U) << messages_of(check);
     EXPECT_EQ(check.messages[0].rule, "spirv");
     EXPECT_EQ(check.messages[0].file, file);

@@ -54,7 +54,7 @@ def property_of(name, description):
     if kind == 'int':
         scale = MIB if description.unit == 'bytes' else 1
         return bpy.props.IntProperty(
-            default=min(default // scale, INT_MAX), min=max(int(least) // scale, -INT_MAX), max=min(int(description.max) // scale, INT_MAX), **facts)
+            default=min(int(default) // scale, INT_MAX), min=max(int(least) // scale, -INT_MAX), max=min(int(description.max) // scale, INT_MAX), **facts)
     subtype = 'ANGLE' if description.unit == 'rad' else 'NONE'
     return bpy.props.FloatProperty(default=default, min=least, max=description.max, subtype=subtype, precision=3, **facts)
 

@@ -22,8 +22,12 @@ from . import cameras, collect, mirror, settings, world
 BAKE = os.path.join(os.path.dirname(__file__), 'bake_world.py')
 # Width of the picture of a world, texels.
 WORLD_WIDTH = 512
-# Time between two pictures of a refinement.
-SECONDS = 0.1
+# Time of a part of the work. An edit waits for the part that is being done, and is shown after another one.
+SECONDS = 1 / 30
+# For so long, Blender's thread waits for the picture of an edit: its window is then drawn once for the edit, and overlays and picture agree.
+WAIT_SECONDS = 0.1
+# Between the first picture of an edit and its refinement, which would be in vain if another edit follows.
+PAUSE_SECONDS = 0.1
 # Between two looks for new pictures.
 POLL_SECONDS = 0.02
 
@@ -79,17 +83,17 @@ class Painter:
         with self.condition:
             self.wanted.update(wanted)
             self.wanted_count += 1
-            self.condition.notify()
+            self.condition.notify_all()
 
     def end(self):
         with self.condition:
             self.is_ended = True
-            self.condition.notify()
+            self.condition.notify_all()
 
-    def take_wanted(self, is_idle):
+    def take_wanted(self, seconds):
+        """What is wanted, and how often it was; waits for it for so long. None: without an end."""
         with self.condition:
-            while is_idle and not self.wanted and not self.is_ended:
-                self.condition.wait()
+            self.condition.wait_for(lambda: self.wanted or self.is_ended, seconds)
             wanted, self.wanted = self.wanted, {}
             return wanted, self.wanted_count
 
@@ -98,6 +102,15 @@ class Painter:
             for name, value in values.items():
                 setattr(self, name, value)
             self.is_new = True
+            self.condition.notify_all()
+
+    def take_shown(self, seconds):
+        """The picture, after all that is wanted is in it or the time is over. It does not wait for the first one."""
+        with self.condition:
+            if self.picture is not None:
+                self.condition.wait_for(lambda: self.shown_count == self.wanted_count or self.error is not None, seconds)
+            self.is_new = False
+            return self.picture, self.error, self.samples
 
     def run(self):
         try:
@@ -108,9 +121,9 @@ class Painter:
     def paint(self, gnomon):
         shown = mirror.Mirror(gnomon)
         device = renderer = view = None
-        is_idle, values = True, None
+        seconds, values, drawn = None, None, (None, False, 0)
         while True:
-            wanted, count = self.take_wanted(is_idle)
+            wanted, count = self.take_wanted(seconds)
             if self.is_ended:
                 return
             if 'content' in wanted:
@@ -121,8 +134,7 @@ class Painter:
                 shown.camera.edit(kind=kind, **view.camera)
                 shown.eye.parent_from_node = view.matrix
             values = wanted.get('settings', values)
-            is_idle = view is None or values is None
-            if is_idle:
+            if view is None or values is None:
                 continue
             # A setting that is no longer set has its default again.
             if renderer is None or set(values) != names:
@@ -134,9 +146,13 @@ class Painter:
                     setattr(renderer, name, value)
             if renderer.size != view.size:
                 renderer.size = view.size
-            picture, is_idle = renderer.refine(SECONDS, shown.eye)
-            report = renderer.report()
-            self.publish(picture=(picture, is_idle), shown_count=count, samples=report.sample_count, remarks=report.warnings + report.limits)
+            before, drawn = drawn, (*renderer.refine(SECONDS, shown.eye), count)
+            is_complete = drawn[1]
+            seconds = None if is_complete else PAUSE_SECONDS if count != before[2] else 0
+            # The array is another one if the picture is.
+            if drawn[0] is not before[0] or drawn[1:] != before[1:]:
+                report = renderer.report()
+                self.publish(picture=drawn[:2], shown_count=count, samples=report.sample_count, remarks=report.warnings + report.limits)
 
 
 def baked(world_of_scene, done):
@@ -236,8 +252,7 @@ class Viewport:
         if chosen != self.settings:
             self.settings = chosen
             self.painter.want(settings=chosen)
-        with self.painter.condition:
-            picture, error, samples = self.painter.picture, self.painter.error, self.painter.samples
+        picture, error, samples = self.painter.take_shown(WAIT_SECONDS)
         if error is not None:
             engine.update_stats("Gnomon", error)
         elif picture is not None:
@@ -246,9 +261,9 @@ class Viewport:
                                 (f", {remarks} remarks" if remarks else ""))
         if picture is None:
             return
-        if picture is not self.shown:
-            self.shown = picture
+        if self.shown is None or picture[0] is not self.shown[0]:
             self.texture = texture_of(picture[0])
+        self.shown = picture
         gpu.state.blend_set('ALPHA_PREMULT')
         engine.bind_display_space_shader(depsgraph.scene)
         draw_texture_2d(self.texture, (0, 0), context.region.width, context.region.height)

@@ -42,8 +42,9 @@ class RecentCost {
  * pixels, plus the time of writing it to the target. Rules, with B = the budget:
  * - more than 0.95 B is expected: the largest size of which at most 0.8 B is expected, or the smallest there is;
  * - at most 0.7 B is expected of the next larger size: that size;
- * - the set-up takes more than 0.5 B, or the smallest size does not fit: shadows of half the edge. Of twice the edge,
- * if the preview has all pixels and four times the set-up leaves it within 0.7 B, and the set-up within 0.4 B;
+ * - the set-up takes more than 0.5 B, or the smallest size does not fit: shadows of half the edge. The edge is doubled
+ *   again if the preview has all pixels and, with four times the set-up, at most 0.7 B is expected of it, and at most
+ *   0.4 B of its set-up;
  * - at most 0.7 B is expected of a whole sample: a whole sample, until more than 0.95 B is expected. If its time is not
  *   known, it is expected to be that of a preview with all pixels, with a set-up that grows as the shadows' texels.
  * Where the time of a preview is a constant plus a share for each pixel and each texel of its shadows, a change in one
@@ -58,7 +59,7 @@ class BudgetController {
  public:
   static constexpr double budget_min = 1e-4;
   static constexpr double budget_max = 10.0;
-  /** Each level has half of the pixels of the one before. Level 0: all. */
+  /** Largest level of a preview. Level 0 has all pixels of the picture, each other one half of those of the last. */
   static constexpr int level_max = 8;
   static constexpr int shadow_divisor_max = 8;
 
@@ -74,20 +75,21 @@ class BudgetController {
 
   /** Plan the first call after an edit. \a pixel_count: of the picture. A budget out of the range is moved into it. */
   FirstPlan plan_first(double budget, std::int64_t pixel_count);
-  /** Time that is expected of a whole sample after an edit, with its writing. Empty: not known. */
+  /** Expected time of a whole sample after an edit and of writing it to the target. Empty: not known. */
   [[nodiscard]] std::optional<double> whole_seconds(std::int64_t pixel_count) const;
   /** Whether the set-up of a sample is expected to fit into the rest of a call. */
   [[nodiscard]] bool fits_setup(double budget, double spent, bool is_first) const;
   /** Whether the part of the set-up before its shadows is expected to fit into the rest of a call. */
   [[nodiscard]] bool fits_beginning(double budget, double spent) const;
   /**
-   * Parts of shadows that are expected to fit into the rest of a call: at least a sixteenth of the \a part_count of the
-   * set-up if \a must_advance. One as long as no time is known.
+   * Number of parts of shadows that are expected to fit into the rest of a call. With \a must_advance, it is at least a
+   * sixteenth of the \a part_count of the set-up. While no time is known, it is 1.
    */
   [[nodiscard]] int plan_shadow_parts(double budget, double spent, int part_count, bool must_advance) const;
   /**
-   * Rows that are expected to fit into the rest of a call: up to \a rows_left, of \a row_px pixels each. At least one
-   * sixteenth of the \a row_count of the sample if \a must_advance. An eighth of those as long as no time is known.
+   * Number of rows that are expected to fit into the rest of a call, at most \a rows_left, of \a row_px pixels each.
+   * With \a must_advance, it is at least a sixteenth of the \a row_count of the sample. While no time is known, it is
+   * an eighth of \a row_count.
    */
   [[nodiscard]] int plan_rows(double budget, double spent, int row_px, int rows_left, int row_count,
                               bool must_advance) const;

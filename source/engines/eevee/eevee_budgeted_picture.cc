@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -103,6 +104,8 @@ bool BudgetedPicture::has_samples(const draw::View &view) const
 bool BudgetedPicture::draw(const draw::View &view, const draw::Target &target)
 {
   const bool is_shown = shown_ == viewport_.restart_count() && shown_view_ == view;
+  const int samples_before = has_samples(view) ? viewport_.samples_drawn() : 0;
+  has_drawn_preview_ = false;
   // If this fails, no picture is shown.
   shown_.reset();
   try {
@@ -128,27 +131,41 @@ bool BudgetedPicture::draw(const draw::View &view, const draw::Target &target)
   }
   viewport_.set_rows_max(draw::Viewport::no_rows_max);
   const bool is_preview = !has_samples(view);
-  if (target) {
-    const std::array<draw::Engine *, 1> engines = {is_preview ? preview_engine_.get() : &engine_};
-    draw::Target written = target;
-    written.size_px = draw::size_in(target, viewport_.size_px());
-    controller_.add_write(time_of([&] { (is_preview ? *preview_ : viewport_).write(engines, written); }));
-  }
   shown_ = viewport_.restart_count();
   shown_view_ = view;
+  is_preview_shown_ = is_preview;
+  if (target) {
+    write(target);
+  }
   const bool is_complete = !is_preview && engine_.is_complete(viewport_);
-  report_ = {.kind = is_preview    ? BudgetReport::Kind::Preview
-                     : is_complete ? BudgetReport::Kind::Complete
-                                   : BudgetReport::Kind::Refining,
-             .size_px = viewport_.size_px(),
-             .drawn_size_px = is_preview ? preview_->size_px() : viewport_.size_px(),
-             .shadow_divisor = is_preview ? preview_settings_->second : 1,
-             .samples_drawn = is_preview ? 0 : viewport_.samples_drawn(),
-             .sample_count = engine_.settings().sample_count,
-             .budget_seconds = budget_,
-             .seconds = spent(),
-             .whole_seconds = controller_.whole_seconds(pixel_count(viewport_.size_px()))};
+  report_ = {
+      .kind = is_preview    ? BudgetReport::Kind::Preview
+              : is_complete ? BudgetReport::Kind::Complete
+                            : BudgetReport::Kind::Refining,
+      .is_new = !is_shown || has_drawn_preview_ || (is_preview ? 0 : viewport_.samples_drawn()) != samples_before,
+      .size_px = viewport_.size_px(),
+      .drawn_size_px = is_preview ? preview_->size_px() : viewport_.size_px(),
+      .shadow_divisor = is_preview ? preview_settings_->second : 1,
+      .samples_drawn = is_preview ? 0 : viewport_.samples_drawn(),
+      .sample_count = engine_.settings().sample_count,
+      .budget_seconds = budget_,
+      .seconds = spent(),
+      .whole_seconds = controller_.whole_seconds(pixel_count(viewport_.size_px()))};
   return is_complete;
+}
+
+void BudgetedPicture::write(const draw::Target &target)
+{
+  // If this fails, no picture is shown.
+  const std::optional<std::uint64_t> shown = std::exchange(shown_, std::nullopt);
+  if (!shown) {
+    throw gpu::Error("eevee: there is no picture to write: BudgetedPicture::draw must come before write");
+  }
+  const std::array<draw::Engine *, 1> engines = {is_preview_shown_ ? preview_engine_.get() : &engine_};
+  draw::Target written = target;
+  written.size_px = draw::size_in(target, viewport_.size_px());
+  controller_.add_write(time_of([&] { (is_preview_shown_ ? *preview_ : viewport_).write(engines, written); }));
+  shown_ = shown;
 }
 
 void BudgetedPicture::draw_first(const draw::View &view)
@@ -193,6 +210,7 @@ bool BudgetedPicture::draw_better(const draw::View &view)
 void BudgetedPicture::draw_preview(const draw::View &view, const BudgetController::FirstPlan &plan, bool is_planned)
 {
   preview_plan_ = plan;
+  has_drawn_preview_ = true;
   const glm::ivec2 size_px = BudgetController::size_at(plan.level, viewport_.size_px());
   std::array<draw::Engine *, 1> engines{};
   // The time of edits, which was spent before, is a part of the set-up.

@@ -20,6 +20,8 @@ struct BudgetReport {
     Complete,
   };
   Kind kind = Kind::Preview;
+  /** The shown picture is another than that of the last call. */
+  bool is_new = false;
   /** Size of the picture, and of the shown image. */
   glm::ivec2 size_px{0};
   glm::ivec2 drawn_size_px{0};
@@ -54,7 +56,8 @@ struct BudgetReport {
  * set-up of a sample is divided into its depth and parts of shadows: layers, or rows of large layers. The layers of one
  * exponential shadow are drawn in one call.
  *
- * Each call waits for the device, whose time it measures. One viewport, one object, the device's thread, no recording.
+ * Each call waits for the device, whose time it measures. Use one object for each viewport, on the device's thread and
+ * not during a recording.
  */
 class BudgetedPicture {
  public:
@@ -82,6 +85,8 @@ class BudgetedPicture {
    * \throws gpu::Error as draw::Viewport::draw
    */
   bool draw(const draw::View &view, const draw::Target &target);
+  /** Write the picture of the last draw to \a target. \pre draw \throws gpu::Error as draw::Viewport::write */
+  void write(const draw::Target &target);
   [[nodiscard]] const BudgetReport &report() const
   {
     return report_;
@@ -129,9 +134,12 @@ class BudgetedPicture {
   /** draw::Viewport::restart_count and view of the picture that was shown last. Empty: none. */
   std::optional<std::uint64_t> shown_;
   draw::View shown_view_;
+  bool is_preview_shown_ = false;
   /** preview_ shows this picture, as `preview_plan_` says. */
   bool has_preview_ = false;
   BudgetController::FirstPlan preview_plan_;
+  /** The call has drawn a preview. */
+  bool has_drawn_preview_ = false;
   /** Calls that have shown the same preview. */
   int stalled_calls_ = 0;
   /** Parts of shadows of the set-up that has begun. */

@@ -44,9 +44,9 @@ class Engine final : public draw::Engine {
    */
   Engine(render_scene::RenderScene &scene, const Settings &settings);
   /**
-   * An engine for the scene of \a other that shares its programs, so that what one has compiled the other need not, and
-   * its table of emissive surfaces. Both have the same kernel of percentage-closer filtering (ShadowSettings::pcf), and
-   * reload_shaders of one is followed by a sync of the viewports of both. Either may be destroyed first.
+   * An engine for the scene of \a other. Both share compiled programs and the table of emissive surfaces. Both must
+   * have the same kernel of percentage-closer filtering (ShadowSettings::pcf). After reload_shaders of one, the
+   * viewports of both must be synced. Either may be destroyed first.
    */
   Engine(const Engine &other, const Settings &settings)
       : scene_(other.scene_), settings_(settings), shaders_(other.shaders_), emission_(other.emission_)
@@ -138,7 +138,7 @@ class Engine final : public draw::Engine {
   std::uint64_t settings_revision_ = 0;
   /** Shared by all viewports, and with engines that were made from this one. */
   std::shared_ptr<ShaderCache> shaders_;
-  /** The same. */
+  /** Shared in the same way. */
   std::shared_ptr<SceneEmission> emission_;
   /** Owned by the viewports that draw with this engine. */
   mutable std::weak_ptr<SharedData> shared_;

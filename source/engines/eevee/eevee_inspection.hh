@@ -121,9 +121,9 @@ class Inspection {
   /**
    * Texels of the lamp's shadow along the edge of a pixel, at the opaque surface at the centre of each pixel: below 1
    * where texels are larger than pixels. The edge of a texel is shadow_texel_size, that of a pixel is measured parallel
-   * to the picture at the depth of the surface. 0 where the lamp has no shadow or, without casters, would give no
-   * light: without a surface, on surfaces that are unlit, receive no shadows or face away from the lamp's centre, and
-   * outside of its cone and range. Rows from the bottom. Empty if the lamp gives no light or has no shadow, or there
+   * to the picture at the depth of the surface. 0 where the lamp has no shadow, where there is no surface, on surfaces
+   * that are unlit, receive no shadows or face away from the lamp's centre, and outside of the lamp's cone and range.
+   * Rows from the bottom. Empty if the lamp gives no light or has no shadow, or there
    * are no objects. \pre Settings::has_surfaces
    */
   [[nodiscard]] std::optional<std::vector<float>> texel_density(const draw::View &picture_view, std::size_t lamp) const;

@@ -94,6 +94,14 @@ bool SceneRenderer::draw_within(double budget_seconds, const scene::PlacedCamera
   return budgeted_->draw(view_of(camera), target);
 }
 
+void SceneRenderer::write_shown(const draw::Target &target)
+{
+  if (!budgeted_) {
+    throw gpu::Error("eevee: there is no picture to write: call SceneRenderer::draw_within before write_shown");
+  }
+  budgeted_->write(target);
+}
+
 int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &limits, const draw::Target &target)
 {
   return draw_all([&](int) { return camera; }, limits, target);

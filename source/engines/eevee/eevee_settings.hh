@@ -88,9 +88,9 @@ struct Settings {
   /**
    * Adaptive sampling: after the first samples (half of them, at most 4), only those pixels get further samples that
    * differ from one of the eight around them by more than this, relative to the square root of their brightness, or in
-   * alpha. Thin objects that the first samples miss are lost. 0: all pixels get all samples. All pixels get them, too,
+   * alpha. Thin objects that the first samples miss are lost. 0: all pixels get all samples. The setting has no effect
    * in scenes with lamps with an extent, a world, emissive surfaces, surfaces that transmit light or blended objects
-   * that cast shadows, and where a part of the light or a region is drawn. \pre sample_first and sample_end are 0,
+   * that cast shadows, and where a component of the light or a region is drawn. \pre sample_first and sample_end are 0,
    * unless this is 0
    */
   float noise_threshold = 0.0F;
@@ -126,6 +126,7 @@ struct Settings {
   /** Enables Inspection::surfaces, which needs additional targets and a pass. */
   bool has_surfaces = false;
 
+  /** `sample_count`, or for 0 the number that approximations assume. */
   [[nodiscard]] int planned_sample_count() const
   {
     return sample_count == 0 ? open_ended_sample_count : sample_count;
@@ -135,11 +136,11 @@ struct Settings {
   {
     return emissive_point_count.value_or(planned_sample_count() > 1 ? 4 : 0);
   }
-  /** The rows of this struct alone: ShadowSettings has its own. */
+  /** Visits the rows of this struct. ShadowSettings has rows of its own. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 
-  /** Number of samples that are drawn, of a picture with a known number of samples; otherwise 0. */
+  /** Number of samples from `sample_first` to `sample_end`. 0: no limit. */
   [[nodiscard]] int drawn_sample_count() const
   {
     return (sample_end == 0 ? sample_count : sample_end) - sample_first;

@@ -12,7 +12,7 @@
 
 namespace gnomon::eevee {
 
-/** The content of a layer. */
+/** The content of an octahedral layer of an exponential shadow map. */
 enum class EsmMethod {
   /** The mean of exp(c·z) for distances z. Shadows are sharp, but light leaks behind casters over a length of 1 / c. */
   Esm,
@@ -56,7 +56,7 @@ struct EsmSettings {
   /** With the default filter angle, Disk4 has the quality of Disk32 in a quarter of the time. */
   EsmKernel kernel = EsmKernel::Disk4;
 
-  /** All but the method. */
+  /** Visits the rows of all members but `method`. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -64,7 +64,7 @@ struct EsmSettings {
 /** Maximum number of cascades of a sun. */
 inline constexpr int cascade_count_max = 4;
 
-/** Maps whose texels would be smaller are made smaller. */
+/** Least edge of a texel of a resized cascade, pixels. Maps with smaller texels get fewer. */
 inline constexpr double texel_in_pixels = 0.125;
 
 /** The distribution of a sun's cascades over the visible range. */
@@ -140,7 +140,7 @@ struct ShadowSettings {
   /** Maximum device memory of all shadow layers, bytes. \see plan_shadows */
   std::size_t memory_bytes_max = std::size_t(1) << 30U;
 
-  /** Also those of `esm` and `cascades`. */
+  /** Visits also the rows of `esm` and `cascades`. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
@@ -240,16 +240,17 @@ constexpr void ShadowSettings::for_each_property(Visit &&visit)
                   .min = of_lamp("shadow_size_px").min,
                   .max = of_lamp("shadow_size_px").max,
                   .sentence = "Texels along an edge of a cube's face, for points, area lamps and wide spots."}));
-  visit(property(&ShadowSettings::map_size_px,
-                 {.name = "map_size_px",
-                  .key = "shadow_size",
-                  .option = "shadow-size",
-                  .label = "Shadow size",
-                  .unit = "px",
-                  .min = of_lamp("shadow_size_px").min,
-                  .max = of_lamp("shadow_size_px").max,
-                  .sentence = "Texels along an edge of a map, for spots and suns. Pictures for which there is time may "
-                              "have other sizes for suns."}));
+  visit(
+      property(&ShadowSettings::map_size_px,
+               {.name = "map_size_px",
+                .key = "shadow_size",
+                .option = "shadow-size",
+                .label = "Shadow size",
+                .unit = "px",
+                .min = of_lamp("shadow_size_px").min,
+                .max = of_lamp("shadow_size_px").max,
+                .sentence = "Texels along an edge of a map, for spots and suns. Offline pictures may have other sizes "
+                            "for suns."}));
   visit(property(&ShadowSettings::pcf, {.name = "pcf",
                                         .option = "pcf",
                                         .label = "PCF kernel",

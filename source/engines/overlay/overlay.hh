@@ -13,8 +13,7 @@
 #include <span>
 #include <vector>
 
-/** The additions of an editor to a picture: the object under a pixel, an outline of selected objects, and lines in the
- * scene. */
+/** What an editor needs beside a picture: the object under a pixel, an outline of selected objects, and lines. */
 namespace gnomon::overlay {
 
 enum class ShaderId;
@@ -29,8 +28,8 @@ struct TrianglePoint {
   /** Interpolated Mesh::uvs; (0, 0) if the mesh has none. */
   glm::vec2 uv{0.0F};
   /**
-   * Interpolated Mesh::normals, a unit vector in world space. Where they add up to zero, that of the triangle. Of the
-   * front, also where the back is seen.
+   * Interpolated Mesh::normals, a unit vector in world space; the triangle's normal where they add up to zero. It is on
+   * the front side, also where the back is seen.
    */
   glm::vec3 normal_ws{0.0F, 0.0F, 1.0F};
 };
@@ -52,13 +51,13 @@ struct Hit {
 enum class Reach {
   /** Those that are seen there. */
   Visible,
-  /** Also those that others cover. */
+  /** All, also where other objects cover them. */
   Through
 };
 
 /** How much of a node must be in an area, so that Overlay::select finds it. */
 enum class Extent {
-  /** A pixel. */
+  /** At least one pixel. */
   Part,
   /**
    * All that the picture would show if nothing covered it. A node that reaches beyond the edge of the picture, or
@@ -81,14 +80,14 @@ enum class Extent {
 
 /** A straight line between two points. */
 struct Line {
-  /** World space of the scene, metres, below 1e18, as is to_ws. */
+  /** Ends in world space of the scene, metres; absolute values below 1e18. */
   glm::dvec3 from_ws{0.0};
   glm::dvec3 to_ws{0.0};
   /** Not premultiplied, and stored as Target::encoding stores; the view transform does not change it. */
   glm::vec4 color{1.0F};
-  /** On the screen, whatever the distance; above 0. */
+  /** Width in the picture at every distance, pixels; above 0. */
   float width_px = 1.5F;
-  /** Drawn also where objects hide it. */
+  /** Whether the line is also drawn where objects hide it. */
   bool is_on_top = false;
 };
 

@@ -41,7 +41,7 @@ struct Data;
 
 /**
  * Draws surfaces without lighting: base colour, its texture, vertex colours and emission. Blended surfaces are blended
- * from back to front, and those that transmit light as if the part that they do not transmit covered what is behind;
+ * from back to front, as are surfaces that transmit light, with the fraction that they do not transmit as the opacity;
  * neither casts a shadow. A transmission texture is not read: its material is drawn opaque. A depth camera renders the
  * scene into a texture, which all viewports share and which is rendered again when the objects or the camera change.
  * Surfaces that receive shadows and are occluded from the depth camera are black. A picture has one sample for each

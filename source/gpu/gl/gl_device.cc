@@ -96,7 +96,7 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
       context_(std::move(context)),
       is_debug_(desc.is_debug && context_),
       has_pass_groups_(context_ || epoxy_has_gl_extension("GL_EXT_debug_tool")),
-      host_state_(!context_)
+      host_state_(!context_, names_)
 {
   const Calls calls(*this);
   if (is_debug_) {
@@ -125,16 +125,16 @@ GlDevice::~GlDevice()
   const Calls calls(*this);
   free_live_resources();
   stream_.destroy();
-  glDeleteBuffers(GLsizei(pool_.size()), pool_.data());
-  glDeleteBuffers(1, &absent_streams_);
+  names_.delete_buffers(pool_);
+  names_.delete_buffers({&absent_streams_, 1});
   glDeleteVertexArrays(1, &shared_array_.name);
   glDeleteVertexArrays(1, &host_array_.name);
   glDeleteVertexArrays(1, &empty_vertex_array_);
   glDeleteFramebuffers(1, &other_framebuffer_);
   for (const auto &dummies : dummies_) {
     for (const Dummy &one : dummies) {
-      glDeleteTextures(1, &one.texture);
-      glDeleteSamplers(1, &one.sampler);
+      names_.delete_textures({&one.texture, 1});
+      names_.delete_samplers({&one.sampler, 1});
     }
   }
   if (probe_query_) {

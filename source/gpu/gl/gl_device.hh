@@ -200,6 +200,7 @@ class GlDevice final : public Device {
   /** State::Wireframe of the last draws of the pass. */
   bool is_wireframe_ = false;
   std::vector<std::string> driver_errors_;
+  DeviceNames names_;
   HostState host_state_;
   /** Errors of OpenGL that the host had pending when the outermost scope began. */
   std::vector<GLenum> host_errors_;
@@ -246,7 +247,7 @@ class GlDevice final : public Device {
   PoolBuffers pool_{};
   /** Sizes of the pools in bytes. */
   PoolSizes pool_size_{};
-  StreamRing stream_;
+  StreamRing stream_{names_};
   /** Byte offsets of the list's instances and draws in the stream's buffer. */
   std::size_t instances_offset_ = 0;
   std::size_t draws_offset_ = 0;

@@ -64,8 +64,7 @@ GlFormat gl_format(Format format)
 
 GLuint GlDevice::create_buffer_of(GLenum target, std::size_t size_bytes)
 {
-  GLuint buffer = 0;
-  glCreateBuffers(1, &buffer);
+  const GLuint buffer = names_.create_buffer();
   // Bound instead of using glNamedBufferData: llvmpipe delays updates until earlier draws have finished only if it
   // knows the buffer's target.
   host_state_.keep_buffer(target);
@@ -83,9 +82,8 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
     textures_.insert(id, {GLuint(desc.host.name), desc, 0});
     return;
   }
-  GLuint texture = 0;
+  const GLuint texture = names_.create_texture(gl_target(desc.kind));
   GLuint buffer = 0;
-  glCreateTextures(gl_target(desc.kind), 1, &texture);
   const GLenum internal = gl_format(desc.format).internal;
   switch (desc.kind) {
     case TextureKind::Flat: glTextureStorage2D(texture, desc.mip_levels, internal, desc.width, desc.height); break;
@@ -100,8 +98,8 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
   }
   label(GL_TEXTURE, texture, desc.name);
   check_or(fmt::format("texture '{}'", desc.name), [&] {
-    glDeleteTextures(1, &texture);
-    glDeleteBuffers(1, &buffer);
+    names_.delete_textures({&texture, 1});
+    names_.delete_buffers({&buffer, 1});
   });
   textures_.insert(id, {texture, desc, buffer});
 }
@@ -158,8 +156,7 @@ void GlDevice::check_host_texture(const TextureDesc &desc)
 void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
 {
   const Calls calls(*this);
-  GLuint sampler = 0;
-  glCreateSamplers(1, &sampler);
+  const GLuint sampler = names_.create_sampler();
   glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, gl_min_filter(desc.minified.value_or(desc.filter), desc.mip));
   glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, desc.filter == Filter::Linear ? GL_LINEAR : GL_NEAREST);
   glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, gl_wrap(desc.wrap_u));
@@ -180,8 +177,7 @@ void GlDevice::attach(GLuint framebuffer, GLenum point, const AttachmentLayout &
 {
   const auto &[texture, desc, buffer] = textures_.at(attachment.texture);
   if (attachment.layer_count > 1) {
-    GLuint &view = views.emplace_back();
-    glGenTextures(1, &view);
+    const GLuint view = views.emplace_back(names_.create_texture_view());
     glTextureView(view, GL_TEXTURE_2D_ARRAY, texture, gl_format(desc.format).internal, 0, GLuint(desc.mip_levels),
                   GLuint(attachment.layer), GLuint(attachment.layer_count));
     glNamedFramebufferTexture(framebuffer, point, view, attachment.mip_level);
@@ -227,7 +223,7 @@ void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
   const GLuint buffer = create_buffer_of(
       desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER, desc.size_bytes);
   label(GL_BUFFER, buffer, desc.name);
-  check_or(fmt::format("buffer '{}'", desc.name), [&] { glDeleteBuffers(1, &buffer); });
+  check_or(fmt::format("buffer '{}'", desc.name), [&] { names_.delete_buffers({&buffer, 1}); });
   buffers_.insert(id, {buffer, desc.size_bytes, false});
 }
 
@@ -236,7 +232,7 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
   PoolBuffers grown{};
   for (std::size_t i = 0; i < pool_count; i++) {
     if (sizes[i] > pool_size_[i]) {
-      glCreateBuffers(1, &grown[i]);
+      grown[i] = names_.create_buffer();
       glNamedBufferData(grown[i], GLsizeiptr(sizes[i]), nullptr, GL_STATIC_DRAW);
       label(GL_BUFFER, grown[i], i == index_pool ? "indices" : std::string(to_string(VertexStream(i))));
     }
@@ -244,7 +240,7 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
   // Replace the old buffers only after all new buffers were created successfully.
   check_or(fmt::format("batch '{}': {} bytes of vertices and {} of indices in all", desc.name,
                        std::reduce(sizes.begin(), sizes.begin() + vertex_stream_count), sizes[index_pool]),
-           [&] { glDeleteBuffers(GLsizei(grown.size()), grown.data()); });
+           [&] { names_.delete_buffers(grown); });
   bool is_copied = false;
   for (std::size_t i = 0; i < pool_count; i++) {
     if (grown[i] != 0) {
@@ -264,7 +260,7 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
     }
   }
   glVertexArrayElementBuffer(shared_array_.name, pool_[index_pool]);
-  glDeleteBuffers(GLsizei(grown.size()), grown.data());
+  names_.delete_buffers(grown);
   if (is_copied) {
     wait_for_copies();
   }
@@ -356,7 +352,7 @@ void GlDevice::host_batch_create(ResourceId id, const std::string &name, const H
       glEnableVertexArrayAttrib(host_array_.name, format.attribute);
     }
     constexpr std::array<float, 8> values = {0, 0, 0, 0, 1, 1, 1, 1};
-    glCreateBuffers(1, &absent_streams_);
+    absent_streams_ = names_.create_buffer();
     glNamedBufferStorage(absent_streams_, sizeof(values), values.data(), 0);
     label(GL_VERTEX_ARRAY, host_array_.name, "batches of the host");
     label(GL_BUFFER, absent_streams_, "absent streams");
@@ -381,24 +377,24 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
       if (const TextureDesc &desc = textures_.at(id).desc; desc.format != Format::Host) {
         destroyed_bytes_ += std::size_t(desc.width) * std::size_t(desc.height) * std::size_t(desc.layers) *
                             std::size_t(texel_size_bytes(desc.format));
-        glDeleteTextures(1, &textures_.at(id).name);
-        glDeleteBuffers(1, &textures_.at(id).buffer);
+        names_.delete_textures({&textures_.at(id).name, 1});
+        names_.delete_buffers({&textures_.at(id).buffer, 1});
       }
       textures_.erase(id);
       break;
     case ResourceKind::Sampler:
-      glDeleteSamplers(1, &samplers_.at(id));
+      names_.delete_samplers({&samplers_.at(id), 1});
       samplers_.erase(id);
       break;
     case ResourceKind::Framebuffer: {
       const GlFramebuffer &framebuffer = framebuffers_.at(id);
       glDeleteFramebuffers(1, &framebuffer.name);
-      glDeleteTextures(GLsizei(framebuffer.views.size()), framebuffer.views.data());
+      names_.delete_textures(framebuffer.views);
       framebuffers_.erase(id);
       break;
     }
     case ResourceKind::Buffer:
-      glDeleteBuffers(1, &buffers_.at(id).name);
+      names_.delete_buffers({&buffers_.at(id).name, 1});
       buffers_.erase(id);
       break;
     case ResourceKind::Shader:

@@ -177,15 +177,14 @@ const GlDevice::Dummy &GlDevice::dummy(const DeclaredSampler &sampler)
     return one;
   }
   const GLenum format = sampler.is_comparison ? GL_DEPTH_COMPONENT32F : GL_RGBA8;
-  glCreateTextures(sampler.target, 1, &one.texture);
+  one.texture = names_.create_texture(sampler.target);
   if (is_buffer) {
     constexpr std::uint32_t black = 0;
-    GLuint buffer = 0;
-    glCreateBuffers(1, &buffer);
+    const GLuint buffer = names_.create_buffer();
     glNamedBufferStorage(buffer, sizeof(black), &black, 0);
     glTextureBuffer(one.texture, format, buffer);
     // The texture keeps the buffer.
-    glDeleteBuffers(1, &buffer);
+    names_.delete_buffers({&buffer, 1});
   }
   else {
     if (is_array) {
@@ -202,7 +201,7 @@ const GlDevice::Dummy &GlDevice::dummy(const DeclaredSampler &sampler)
     }
   }
   label(GL_TEXTURE, one.texture, "unbound");
-  glCreateSamplers(1, &one.sampler);
+  one.sampler = names_.create_sampler();
   label(GL_SAMPLER, one.sampler, "unbound");
   glSamplerParameteri(one.sampler, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glSamplerParameteri(one.sampler, GL_TEXTURE_MAG_FILTER, GL_NEAREST);

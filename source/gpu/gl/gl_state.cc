@@ -213,7 +213,7 @@ bool raise_gl_error(GLenum error)
   return is_raised;
 }
 
-HostState::HostState(bool is_host) : is_host_(is_host)
+HostState::HostState(bool is_host, const DeviceNames &names) : is_host_(is_host), names_(names)
 {
   if (is_host) {
     viewport_count_ = integer(GL_MAX_VIEWPORTS);
@@ -301,7 +301,7 @@ void HostState::keep_color_buffers(GLuint count)
 void HostState::keep_buffer(GLenum target)
 {
   if (is_host_ && std::ranges::find(buffers_, target, &Buffer::target) == buffers_.end()) {
-    buffers_.push_back({target, bound_name(binding_of(target), glIsBuffer)});
+    buffers_.push_back({target, names_.host_buffer(GLuint(integer(binding_of(target))))});
   }
 }
 
@@ -315,8 +315,8 @@ void HostState::keep_indexed_buffer(GLenum target, GLuint slot)
   keep_buffer(target);
   GLint name = 0;
   glGetIntegeri_v(binding_of(target), slot, &name);
-  IndexedBuffer &saved = indexed_buffers_.emplace_back(
-      IndexedBuffer{target, slot, name != 0 && glIsBuffer(GLuint(name)) == GL_TRUE ? GLuint(name) : 0, 0, 0});
+  IndexedBuffer &saved =
+      indexed_buffers_.emplace_back(IndexedBuffer{target, slot, names_.host_buffer(GLuint(name)), 0, 0});
   if (saved.name != 0) {
     const bool is_uniform = target == GL_UNIFORM_BUFFER;
     glGetInteger64i_v(is_uniform ? GL_UNIFORM_BUFFER_START : GL_SHADER_STORAGE_BUFFER_START, slot, &saved.offset_bytes);
@@ -334,10 +334,10 @@ void HostState::keep_texture(GLuint unit, GLenum target)
     active_texture_ = integer(GL_ACTIVE_TEXTURE);
   }
   glActiveTexture(GL_TEXTURE0 + unit);
-  const GLuint texture = bound_name(texture_binding_of(target), glIsTexture);
+  const GLuint texture = names_.host_texture(GLuint(integer(texture_binding_of(target))));
   textures_.push_back({unit, target, texture != 0 && is_of_target(texture, target) ? texture : 0});
   if (std::ranges::find(samplers_, unit, &BoundSampler::unit) == samplers_.end()) {
-    samplers_.push_back({unit, bound_name(GL_SAMPLER_BINDING, glIsSampler)});
+    samplers_.push_back({unit, names_.host_sampler(GLuint(integer(GL_SAMPLER_BINDING)))});
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <epoxy/gl.h>
+#include "gl_names.hh"
 
 #include <array>
 #include <optional>
@@ -34,13 +34,15 @@ enum class PixelTransfer { Pack, Unpack };
  * be bound again. Neither can a program that is flagged for deletion, unless another context uses it, or one that did
  * not link a second time. Such bindings are left empty, and no call here raises an error of OpenGL.
  *
- * A name that is free again may be given to another object, therefore names are looked up before the device changes
- * anything.
+ * A name that is free again may be given to an object of the device: \see DeviceNames.
  */
 class HostState {
  public:
-  /** \a is_host: whether the current context is a host's. Otherwise sets the state that the functions below set. */
-  explicit HostState(bool is_host);
+  /**
+   * \a is_host: whether the current context is a host's. Otherwise sets the state that the functions below set.
+   * \a names: of the device; must outlive this object
+   */
+  HostState(bool is_host, const DeviceNames &names);
 
   /**
    * Before the first draw or clear: program, vertex array, draw framebuffer, indirect buffer, capabilities, depth,
@@ -129,6 +131,7 @@ class HostState {
   void restore(const DrawState &saved) const;
 
   bool is_host_;
+  const DeviceNames &names_;
   GLint viewport_count_ = 0;
   std::optional<DrawState> draw_;
   std::optional<PolygonOffset> polygon_offset_;

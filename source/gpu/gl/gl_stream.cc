@@ -31,14 +31,13 @@ void StreamRing::grow(std::size_t size_bytes)
   const std::size_t grown_bytes = std::bit_ceil(std::max(size_bytes, size_min));
   constexpr GLbitfield access = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
   const auto total_bytes = GLsizeiptr(segment_count * grown_bytes);
-  GLuint grown = 0;
-  glCreateBuffers(1, &grown);
+  const GLuint grown = names_.create_buffer();
   glNamedBufferStorage(grown, total_bytes, nullptr, access);
   constexpr std::string_view name = "stream";
   glObjectLabel(GL_BUFFER, grown, GLsizei(name.size()), name.data());
   auto *mapped = static_cast<std::byte *>(glMapNamedBufferRange(grown, 0, total_bytes, access));
   if (!mapped) {
-    glDeleteBuffers(1, &grown);
+    names_.delete_buffers({&grown, 1});
     throw TransientError("submit: {} bytes of draws, instances and constants: the driver is out of memory", size_bytes);
   }
   destroy();
@@ -70,7 +69,7 @@ void StreamRing::destroy()
     fence = nullptr;
   }
   // This also unmaps the buffer.
-  glDeleteBuffers(1, &buffer_);
+  names_.delete_buffers({&buffer_, 1});
   buffer_ = 0;
   mapped_ = nullptr;
   segment_bytes_ = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <epoxy/gl.h>
+#include "gl_names.hh"
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,8 @@ namespace gnomon::gpu {
  */
 class StreamRing {
  public:
-  StreamRing() = default;
+  /** \a names: of the device; must outlive the ring */
+  explicit StreamRing(DeviceNames &names) : names_(names) {}
   StreamRing(const StreamRing &) = delete;
   StreamRing &operator=(const StreamRing &) = delete;
 
@@ -40,6 +41,7 @@ class StreamRing {
   /** Replaces the buffer by a larger one. The driver keeps the old buffer until the device no longer uses it. */
   void grow(std::size_t size_bytes);
 
+  DeviceNames &names_;
   GLuint buffer_ = 0;
   std::byte *mapped_ = nullptr;
   std::size_t segment_bytes_ = 0;

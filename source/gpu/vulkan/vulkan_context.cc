@@ -292,7 +292,7 @@ void VulkanContext::destroy()
     vk.vkDestroyDevice(device, nullptr);
   }
   for (const std::string &message : take_messages()) {
-    sink_(message);
+    sink_(fmt::format("the validation layers report: {}", message));
   }
   if (messenger_ != VK_NULL_HANDLE) {
     instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_,
@@ -512,10 +512,19 @@ VkBool32 VKAPI_PTR VulkanContext::receive_message(VkDebugUtilsMessageSeverityFla
                                                   VkDebugUtilsMessageTypeFlagsEXT /*types*/,
                                                   const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
 {
+  // A framebuffer may have fewer colours than a program writes. Vulkan discards these values, which later versions of
+  // the layers warn of.
+  constexpr std::string_view unused_color = "Undefined-Value-ShaderOutputNotConsumed-DynamicRendering";
+  const std::string_view id = data->pMessageIdName ? data->pMessageIdName : "";
+  if (id == unused_color) {
+    return VK_FALSE;
+  }
   // Exceptions must not propagate through the driver, so messages are stored until check_messages().
   auto *context = static_cast<VulkanContext *>(user);
   const std::scoped_lock lock(context->messages_mutex_);
-  context->messages_.emplace_back(data->pMessage);
+  // Later versions of the layers leave the id out of the text.
+  const std::string_view text = data->pMessage;
+  context->messages_.push_back(text.find(id) == text.npos ? fmt::format("{}: {}", id, text) : std::string(text));
   return VK_FALSE;
 }
 

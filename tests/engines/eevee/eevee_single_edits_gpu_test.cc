@@ -23,10 +23,14 @@ using EditPixels = std::vector<glm::vec4>;
 
 constexpr glm::ivec2 single_edits_size_px{40, 28};
 
-/** Maps that are fitted to the picture without slack, so that they do not depend on pictures before. */
+/**
+ * Maps that are fitted to the picture without slack, so that they do not depend on pictures before. Several samples
+ * have one emissive point each instead of four, whose shadows of 256 x 256 texels would take most of the time.
+ */
 Settings small_settings(int sample_count)
 {
   Settings settings{.sample_count = sample_count};
+  settings.emissive_point_count = sample_count > 1 ? 1 : 0;
   settings.shadow.cube_size_px = settings.shadow.map_size_px = 64;
   settings.shadow.esm.size_px = 32;
   settings.shadow.is_fitted_to_depth = true;

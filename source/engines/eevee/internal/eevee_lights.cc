@@ -51,6 +51,20 @@ std::span<glm::vec4, LIGHT_TEXELS> texels_of(std::vector<glm::vec4> &texels, std
 
 }  // namespace
 
+/** First of PlannedLights::placed that are of emissive surfaces, of the world, and further points of the surfaces. */
+struct SceneLights::PlacedSections {
+  std::size_t emission = 0;
+  std::size_t world = 0;
+  std::size_t further = 0;
+
+  [[nodiscard]] LightPart::Kind part_of(std::size_t lamp) const
+  {
+    return lamp < emission                   ? LightPart::Kind::Lamp
+           : lamp < world || lamp >= further ? LightPart::Kind::Emission
+                                             : LightPart::Kind::World;
+  }
+};
+
 int light_texture_width(std::size_t count, const gpu::Device &device)
 {
   return std::min(int(std::bit_ceil(count)), device.limits().buffer_texels_max);
@@ -80,39 +94,38 @@ bool SceneLights::sync(const render_scene::RenderScene &scene, const Settings &s
   return true;
 }
 
-void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settings &settings, SceneShadows &shadows)
+SceneLights::PlacedSections SceneLights::place_lights(const render_scene::RenderScene &scene, const Settings &settings,
+                                                      LampShading shading)
 {
-  const int sample_count = settings.planned_sample_count();
-  const LampShading shading = sample_count > 1 ? LampShading::Point : LampShading::Whole;
   const std::shared_ptr<const render_scene::WorldLight> &world = scene.world();
-  const gpu::Limits &limits = scene.device().limits();
-  const scene::Bounds &bounds_ws = scene.bounds();
-  auto &[placed, lamps, is_left_out, points, tinted, planned_bounds_ws, emission] = plan_;
+  std::vector<scene::PlacedLamp> &placed = plan_.placed;
+  Lamps &lamps = plan_.lamps;
+  PlacedSections first;
   placed.assign(scene.lamps().begin(), scene.lamps().end());
   for (scene::PlacedLamp &lamp : placed) {
     lower_range(lamp, settings.light_threshold);
   }
-  const std::size_t emission_first = placed.size();
-  const int emissive_count = emission ? settings.emissive_points() : 0;
-  std::ranges::copy(emission_lamps(emissive_count, bounds_ws), std::back_inserter(placed));
+  first.emission = placed.size();
+  const int emissive_count = plan_.emission ? settings.emissive_points() : 0;
+  std::ranges::copy(emission_lamps(emissive_count, scene.bounds()), std::back_inserter(placed));
   if (shading == LampShading::Whole) {
-    for (scene::PlacedLamp &lamp : std::span(placed).subspan(emission_first)) {
+    for (scene::PlacedLamp &lamp : std::span(placed).subspan(first.emission)) {
       lamp.radius = 0.0F;
     }
   }
-  const std::size_t world_first = placed.size();
+  first.world = placed.size();
   if (world) {
     std::ranges::copy(world_lamps(*world, world_.directions().count), std::back_inserter(placed));
   }
-  const std::size_t further_first = placed.size();
-  const int device_most = limits.buffer_texels_max / LIGHT_TEXELS;
+  first.further = placed.size();
+  const int device_most = scene.device().limits().buffer_texels_max / LIGHT_TEXELS;
   const auto most = std::size_t(std::clamp(device_most, LIGHT_MAX, LIGHT_COUNT_MAX));
   Lamps made = make_lamps(placed, shading, most);
   if (shading == LampShading::Whole && emissive_count > 0) {
     const auto further = std::size_t(points_per_shadow * emissive_count);
     if (made.lights.size() + further <= most) {
       std::ranges::copy(further_emission_lamps(emissive_count, int(further)), std::back_inserter(placed));
-      add_surface_points(made, placed, further_first);
+      add_surface_points(made, placed, first.further);
     }
   }
   const bool has_reaches = made.reaches == lamps.reaches && made.cube_light_count == lamps.cube_light_count &&
@@ -124,51 +137,69 @@ void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settin
   }
   if (world) {
     lamps.features = lamps.features | Feature::Light | Feature::World;
-    set_kind(lamps, world_first + world->suns.size(), placed.size(), LIGHT_WORLD);
+    set_kind(lamps, first.world + world->suns.size(), placed.size(), LIGHT_WORLD);
   }
-  set_kind(lamps, emission_first, world_first, LIGHT_SURFACE);
-  set_kind(lamps, further_first, placed.size(), LIGHT_SURFACE);
-  if (shading == LampShading::Whole) {
-    // The points of the one sample do not move, so that their shadows are kept.
-    for (std::size_t i = 0; i < lamps.lights.size(); i++) {
-      const std::size_t lamp = lamps.lamp_index[i];
-      if (lamps.lights[i].kind != LIGHT_SURFACE) {
-        continue;
-      }
-      const std::size_t first = lamp < world_first ? emission_first : further_first;
-      const std::size_t end = lamp < world_first ? world_first : placed.size();
-      const LampPoint point =
-          emissive_point(*emission, std::uint32_t(lamp - first), lamp_stream(settings.seed, emission_first),
-                         int(end - first), sample_count);
-      placed[lamp].world_from_lamp = glm::dmat4(point.world_from_lamp);
-      lamps.lights[i] = light_at(lamps.lights[i], point);
+  set_kind(lamps, first.emission, first.world, LIGHT_SURFACE);
+  set_kind(lamps, first.further, placed.size(), LIGHT_SURFACE);
+  return first;
+}
+
+void SceneLights::fix_surface_points(const PlacedSections &first, const Settings &settings)
+{
+  std::vector<scene::PlacedLamp> &placed = plan_.placed;
+  Lamps &lamps = plan_.lamps;
+  for (std::size_t i = 0; i < lamps.lights.size(); i++) {
+    const std::size_t lamp = lamps.lamp_index[i];
+    if (lamps.lights[i].kind != LIGHT_SURFACE) {
+      continue;
+    }
+    const std::size_t begin = lamp < first.world ? first.emission : first.further;
+    const std::size_t end = lamp < first.world ? first.world : placed.size();
+    const LampPoint point =
+        emissive_point(*plan_.emission, std::uint32_t(lamp - begin), lamp_stream(settings.seed, first.emission),
+                       int(end - begin), settings.planned_sample_count());
+    placed[lamp].world_from_lamp = glm::dmat4(point.world_from_lamp);
+    lamps.lights[i] = light_at(lamps.lights[i], point);
+  }
+}
+
+void SceneLights::select_lights(const PlacedSections &first, const LightPart &selected)
+{
+  plan_.is_left_out.clear();
+  for (int i = 0; i < plan_.lamps.light_count(); i++) {
+    const std::size_t lamp = plan_.lamps.lamp_index[std::size_t(i)];
+    const bool is_kept =
+        selected.has(first.part_of(lamp)) && (selected.kind != LightPart::Kind::Lamp || selected.lamp == lamp);
+    plan_.is_left_out.push_back(!is_kept);
+    if (!is_kept) {
+      leave_out(plan_.lamps.lights[std::size_t(i)]);
     }
   }
-  if (shading == LampShading::Point) {
-    set_highlights(lamps, placed, emission_first, sample_count, bounds_ws);
+}
+
+void SceneLights::make_plan(const render_scene::RenderScene &scene, const Settings &settings, SceneShadows &shadows)
+{
+  const int sample_count = settings.planned_sample_count();
+  const LampShading shading = sample_count > 1 ? LampShading::Point : LampShading::Whole;
+  const scene::Bounds &bounds_ws = scene.bounds();
+  const PlacedSections first = place_lights(scene, settings, shading);
+  auto &[placed, lamps, is_left_out, points, tinted, planned_bounds_ws, emission] = plan_;
+  if (shading == LampShading::Whole) {
+    fix_surface_points(first, settings);
+  }
+  else {
+    set_highlights(lamps, placed, first.emission, sample_count, bounds_ws);
   }
   ShadowSettings shadow = settings.shadow;
   // These surfaces receive shadows, and the depths that are read back do not have them.
   shadow.is_fitted_to_depth &= !has_surfaces_without_depth(scene.scene());
-  shadows.sync(limits, shadow_lamps(placed, lamps, shading), bounds_ws, lamps.lights, shadow);
+  shadows.sync(scene.device().limits(), shadow_lamps(placed, lamps, shading), bounds_ws, lamps.lights, shadow);
   planned_bounds_ws = bounds_ws;
   points = shading == LampShading::Point
-               ? LampPoints(placed, lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
-                            world_.directions(), sample_count, emission, emissive_count)
+               ? LampPoints(placed, lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), scene.world(),
+                            world_.directions(), sample_count, emission, emission ? settings.emissive_points() : 0)
                : LampPoints();
-  is_left_out.clear();
-  for (int i = 0; i < lamps.light_count(); i++) {
-    const std::size_t lamp = lamps.lamp_index[std::size_t(i)];
-    const LightPart::Kind part = lamp < emission_first                         ? LightPart::Kind::Lamp
-                                 : lamp < world_first || lamp >= further_first ? LightPart::Kind::Emission
-                                                                               : LightPart::Kind::World;
-    const bool is_kept =
-        settings.light.has(part) && (settings.light.kind != LightPart::Kind::Lamp || settings.light.lamp == lamp);
-    is_left_out.push_back(!is_kept);
-    if (!is_kept) {
-      leave_out(lamps.lights[std::size_t(i)]);
-    }
-  }
+  select_lights(first, settings.light);
   tinted = settings.has_cascade_tint ? first_sun_with_maps(lamps) : std::nullopt;
 }
 

@@ -229,34 +229,23 @@ void WorldOcclusion::add_up(std::size_t variant, Probe &probe) const
   probe.is_lit = true;
 }
 
-WorldDirections WorldOcclusion::directions() const
-{
+/** Sums over the rays of all probes. */
+struct WorldOcclusion::GridLight {
   struct Cell {
     double arriving = 0.0;
     double whole = 0.0;
   };
-  std::array<Cell, std::size_t(grid.x * grid.y)> cells;
+  /** Rays, by their direction. */
+  std::array<Cell, std::size_t(grid.x *grid.y)> cells;
+  /** Light of all rays. */
   Cell all;
-  for (std::size_t probe = 0; probe < std::size_t(probe_count()); probe++) {
-    const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
-    // A probe counts by the surfaces that face it: none do inside of a body, below a ground or high above it.
-    const auto seen = double(std::ranges::count(hits.first(body_rays), RayHit::Front));
-    for (std::size_t ray = 0; ray < probe_rays; ray++) {
-      const Ray &lit = rays_[probe * probe_rays + ray];
-      Cell &sum = cells[lit.cell];
-      sum.whole += seen;
-      sum.arriving += hits[ray] == RayHit::None ? seen : 0.0;
-      const double light = seen * double(lit.luminance);
-      all.whole += light;
-      all.arriving += hits[ray] == RayHit::None ? light : 0.0;
-    }
-  }
-  WorldDirections result{{world_, &world_->rest_directions}, WorldDirections::few};
-  if (!(all.arriving > 0.0)) {
-    return result;
-  }
-  // A place gets all light of a direction or none. The least variance has the root of the mean of its square.
-  const auto brought = [&](double column, double row) {
+
+  /**
+   * Bilinear, between the centres of cells. A place gets all light of a direction or none. The least variance has the
+   * root of the mean of its square.
+   */
+  [[nodiscard]] double importance(double column, double row) const
+  {
     const glm::dvec2 low = glm::floor(glm::dvec2(column, row));
     double value = 0.0;
     for (int corner = 0; corner < 4; corner++) {
@@ -268,7 +257,36 @@ WorldDirections WorldOcclusion::directions() const
       value += share.x * share.y * cell.arriving / std::max(cell.whole, 1.0);
     }
     return std::sqrt(value);
-  };
+  }
+};
+
+WorldOcclusion::GridLight WorldOcclusion::grid_light() const
+{
+  GridLight light;
+  for (std::size_t probe = 0; probe < std::size_t(probe_count()); probe++) {
+    const auto hits = std::span(hits_).subspan(probe * probe_rays, probe_rays);
+    // A probe counts by the surfaces that face it: none do inside of a body, below a ground or high above it.
+    const auto seen = double(std::ranges::count(hits.first(body_rays), RayHit::Front));
+    for (std::size_t ray = 0; ray < probe_rays; ray++) {
+      const Ray &lit = rays_[probe * probe_rays + ray];
+      GridLight::Cell &sum = light.cells[lit.cell];
+      sum.whole += seen;
+      sum.arriving += hits[ray] == RayHit::None ? seen : 0.0;
+      const double brought = seen * double(lit.luminance);
+      light.all.whole += brought;
+      light.all.arriving += hits[ray] == RayHit::None ? brought : 0.0;
+    }
+  }
+  return light;
+}
+
+WorldDirections WorldOcclusion::directions() const
+{
+  const GridLight grid_light = this->grid_light();
+  WorldDirections result{{world_, &world_->rest_directions}, WorldDirections::few};
+  if (!(grid_light.all.arriving > 0.0)) {
+    return result;
+  }
   constexpr glm::ivec2 size = render_scene::WorldLight::size;
   std::vector<float> importance;
   importance.reserve(world_->rest.size());
@@ -278,7 +296,7 @@ WorldDirections WorldOcclusion::directions() const
     const double height = 0.5 + 0.5 * render_scene::direction_of(0.0, (y + 0.5) / size.y).y;
     const double solid_angle = render_scene::texel_solid_angle(y, size.x, size.y);
     for (int x = 0; x < size.x; x++) {
-      const double value = brought(grid.x * (x + 0.5) / size.x - 0.5, grid.y * height - 0.5);
+      const double value = grid_light.importance(grid.x * (x + 0.5) / size.x - 0.5, grid.y * height - 0.5);
       const double light = solid_angle * luminance(world_->rest[importance.size()]);
       importance.push_back(float(value));
       sum += light * value;
@@ -293,7 +311,7 @@ WorldDirections WorldOcclusion::directions() const
   result.distribution = std::make_shared<const render_scene::WorldDistribution>(
       render_scene::rest_distribution(world_->rest, importance));
   // In an open place half of the directions are below the ground. In a room, most meet a wall.
-  if (all.arriving < 0.125 * all.whole) {
+  if (grid_light.all.arriving < 0.125 * grid_light.all.whole) {
     result.count = WorldDirections::many;
   }
   return result;

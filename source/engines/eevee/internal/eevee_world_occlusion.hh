@@ -89,6 +89,8 @@ class WorldOcclusion {
   /** Set `rays_`. */
   void light_rays();
   void add_up(std::size_t variant, Probe &probe) const;
+  struct GridLight;
+  [[nodiscard]] GridLight grid_light() const;
   [[nodiscard]] std::vector<SurfacePoint> seen_points(const draw::View &view) const;
   /** A box without probes around \a points, or around all casters if there are none. */
   [[nodiscard]] Box box_around(std::span<const SurfacePoint> points) const;

@@ -237,19 +237,15 @@ void place_layers(ShadowPlan &plan, const Conditions &conditions)
   plan.map_layers_max = map_layers + int(std::min(spare_bytes / map_bytes, std::size_t(spare_layers)));
 }
 
-}  // namespace
-
-ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings &settings,
-                        const gpu::Limits &device_limits, const ShadowPlan &previous, int viewport_count)
+/** Set ShadowPlan::places, without their layers, and ShadowPlan::limits of lamps that the device does not allow. */
+void add_places(ShadowPlan &plan, const Conditions &conditions)
 {
-  const Conditions conditions{lamps, settings, device_limits, viewport_count};
+  const auto &[lamps, settings, device_limits, viewport_count] = conditions;
   const std::array<int, shadow_array_count> entries_max = {
       std::min(SHADOW_CUBE_MAX, device_limits.array_layers_max / 6),
       // Conservative: this assumes that all maps follow the view, so that each viewport has its own layers.
       std::min(SHADOW_MAP_MAX, device_limits.array_layers_max / std::max(viewport_count, 1)),
       std::min(ESM_MAX, device_limits.array_layers_max)};
-  ShadowPlan plan;
-  plan.cubes = previous.cubes;
   std::array<int, shadow_array_count> entries{};
   std::vector<std::string> lost;
   std::vector<std::string> too_large;
@@ -292,17 +288,35 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
     plan.limits.push_back(fmt::format("the shadow size of {} lamps is {} texels, as this device takes no more: {}",
                                       too_large.size(), device_limits.texture_size_max, listed(too_large)));
   }
-  fit_memory(plan, conditions);
+}
+
+/** Set ShadowPlace::edge_max_px. */
+void set_largest_edges(ShadowPlan &plan, const Conditions &conditions)
+{
   for (ShadowPlace &place : plan.places) {
     const ShadowRequest &given = place.given;
-    const bool is_alone = viewport_count <= 1 && std::ranges::count_if(plan.places, [&](const ShadowPlace &other) {
-                                                   return other.given.array == given.array;
-                                                 }) == 1;
+    const bool is_alone =
+        conditions.viewport_count <= 1 && std::ranges::count_if(plan.places, [&](const ShadowPlace &other) {
+                                            return other.given.array == given.array;
+                                          }) == 1;
     const bool is_larger = is_alone && given.can_have_larger_layers;
     place.edge_max_px = is_larger ? std::min(int(given.size_px * std::sqrt(double(given.layer_count_max))),
-                                             device_limits.texture_size_max)
+                                             conditions.device_limits.texture_size_max)
                                   : given.size_px;
   }
+}
+
+}  // namespace
+
+ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings &settings,
+                        const gpu::Limits &device_limits, const ShadowPlan &previous, int viewport_count)
+{
+  const Conditions conditions{lamps, settings, device_limits, viewport_count};
+  ShadowPlan plan;
+  plan.cubes = previous.cubes;
+  add_places(plan, conditions);
+  fit_memory(plan, conditions);
+  set_largest_edges(plan, conditions);
   place_layers(plan, conditions);
   return plan;
 }
