@@ -156,8 +156,8 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
     } while (++i < PENUMBRA_TAPS);
   }
   // Without a caster, or where penumbrae are narrower than a texel, the lamp has the visibility of its centre, with the rule for contacts. A
-  // blend of the texels around the receiver would show those of its own surface, or of what it touches, as dark lines. A receiver whose
-  // back the centre sees is in the shadow of itself.
-  float of_center = cos_center > 0.0 ? shadow_at(receiver, lights, vec3(0.0), 0.0, true) : 0.0;
+  // blend of the texels around the receiver would show those of its own surface, or of what it touches, as dark lines. A receiver beside a
+  // caster whose back the centre sees is in the shadow of itself.
+  float of_center = cos_center > 0.0 || gap <= 0.0 ? shadow_at(receiver, lights, vec3(0.0), 0.0, true) : 0.0;
   return is_sharp ? of_center : sum / max(weights, 1e-30);
 }

@@ -511,6 +511,22 @@ TEST_F(PenumbraSceneTest, CastersBehindTheReceiverDoNotDarkenIt)
   EXPECT_LT(darkest, 0.2F * brightest) << "a penumbra crosses the picture";
 }
 
+/** Also of a lamp whose centre is below the horizon. */
+TEST_F(PenumbraSceneTest, TheHorizonOfAGroundWithoutCastersHidesNothingMore)
+{
+  for (const double height : {0.1, -0.1, -0.3}) {
+    scene::Scene scene;
+    test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1.0F))), glm::dmat4(1.0));
+    scene::Lamp lamp;
+    lamp.kind = scene::LampKind::Point;
+    lamp.radius = 0.5F;
+    test::add_lamp(scene, lamp, glm::translate(glm::dmat4(1.0), {2, 0, height}));
+    for (const float visibility : visibilities_of_one_frame(*device, scene, camera_above(10.0, 0.9), {32, 32})) {
+      ASSERT_EQ(visibility, 1.0F) << height;
+    }
+  }
+}
+
 /** The side of a ball that faces the lamp is nearer to it than the edge that hides the lamp. */
 TEST_F(PenumbraSceneTest, BelowABallThatHidesTheLampIsLittleLight)
 {
