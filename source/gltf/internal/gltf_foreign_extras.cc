@@ -31,6 +31,13 @@ std::string minified(std::string_view json)
   return result;
 }
 
+/** In simdjson 3.6, as of Ubuntu 24.04, the key of a field needs an argument that earlier versions do not have; that of
+ * a result does not. */
+std::string_view key_of(const ondemand::field &field)
+{
+  return simdjson::simdjson_result<ondemand::field>(ondemand::field(field)).unescaped_key();
+}
+
 /** The members of \a object as they are written, but those of Gnomon and of \a taken, to which the keys are added. */
 JsonText members_of(ondemand::object object, Keys &taken)
 {
@@ -38,7 +45,7 @@ JsonText members_of(ondemand::object object, Keys &taken)
   Keys keys;
   for (ondemand::field field : object) {
     const char *const start = field.key().raw() - 1;
-    const std::string key(std::string_view(field.unescaped_key()));
+    const std::string key(key_of(field));
     ondemand::value value = field.value();
     const std::string_view text = simdjson::to_json_string(value);
     if (!key.starts_with(own_extra_prefix) && !taken.contains(key)) {
@@ -68,7 +75,7 @@ class Reader {
     ondemand::parser parser;
     ondemand::document document = parser.iterate(json.data(), json.size(), json.size() + document_padding());
     for (ondemand::field member : document.get_object()) {
-      const std::string_view key = member.unescaped_key();
+      const std::string_view key = key_of(member);
       const auto *const array = std::ranges::find(arrays_with_kept_extras, key);
       if (key == extras_key) {
         keep(document_extras, 0, member.value());
@@ -95,7 +102,7 @@ class Reader {
       return;
     }
     for (ondemand::field member : value.get_object()) {
-      const std::string_view key = member.unescaped_key();
+      const std::string_view key = key_of(member);
       read(key, member.value());
     }
   }
