@@ -31,8 +31,10 @@ std::string minified(std::string_view json)
   return result;
 }
 
-/** In simdjson 3.6, as of Ubuntu 24.04, the key of a field needs an argument that earlier versions do not have; that of
- * a result does not. */
+/**
+ * In simdjson 3.6, field::unescaped_key needs an argument that version 3.0 does not have. That of a result has a
+ * default.
+ */
 std::string_view key_of(const ondemand::field &field)
 {
   return simdjson::simdjson_result<ondemand::field>(ondemand::field(field)).unescaped_key();
