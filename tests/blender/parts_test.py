@@ -18,7 +18,7 @@ sys.modules["render_gnomon"] = package
 closed = importlib.import_module("render_gnomon.closed")
 lamps = importlib.import_module("render_gnomon.lamps")
 objects = importlib.import_module("render_gnomon.objects")
-# Of Blender, the others need only names and the properties' arguments.
+# The other modules need only names of Blender, and the arguments of its properties.
 kinds = ('Bool', 'Enum', 'Float', 'Int', 'String', 'Pointer')
 sys.modules["bpy"] = types.SimpleNamespace(
     types=types.SimpleNamespace(PropertyGroup=object, Operator=object, Panel=object),

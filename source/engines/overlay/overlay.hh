@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-/** What an editor needs beside a picture: the object under a pixel, an outline of selected objects, and lines. */
+/** Additions of an editor to a picture: the object under a pixel, an outline of selected objects, and lines. */
 namespace gnomon::overlay {
 
 enum class ShaderId;
