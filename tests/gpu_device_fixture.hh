@@ -34,10 +34,13 @@ inline std::string swiftshader_driver()
   return path;
 }
 
-/** Lets validation layers of Vulkan check what shaders access. Versions since 1.3.296 do not do so by default. */
-inline void check_shader_accesses()
+/** Sets options of Vulkan's validation layers, whose defaults differ between versions. */
+inline void set_validation_options()
 {
+  // Versions since 1.3.296 do not check what shaders access by default.
   setenv("VK_KHRONOS_VALIDATION_SYNCVAL_SHADER_ACCESSES_HEURISTIC", "true", 1);
+  // Versions with this option check submits without regard to timeline semaphores (Vulkan-ValidationLayers #7457).
+  setenv("VK_KHRONOS_VALIDATION_SYNC_QUEUE_SUBMIT", "false", 1);
 }
 
 /**
@@ -56,7 +59,7 @@ inline std::unique_ptr<gpu::Device> create_testing_device(const std::string &bac
   else if (backend != "vulkan") {
     throw gpu::Error("GNOMON_TEST_BACKEND is '{}', not 'gl', 'vulkan' or 'swiftshader'", backend);
   }
-  check_shader_accesses();
+  set_validation_options();
   const auto sink = [](std::string_view message) {
     if (message.starts_with("the validation layers report")) {
       ADD_FAILURE() << message;

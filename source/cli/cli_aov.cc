@@ -170,7 +170,7 @@ std::vector<std::string> Aov::warnings(const scene::Scene &scene) const
 void Aov::add_light(eevee::SceneRenderer &renderer, const scene::PlacedCamera &camera, int sample_count,
                     AovLayers &layers) const
 {
-  using Kind = eevee::LightPart::Kind;
+  using Kind = eevee::LightComponent::Kind;
   for (const eevee::PictureLayer &layer : eevee::picture_layers) {
     if (layer.source == LayerSource::Lamp) {
       for (const std::string &name : lamps_of(layer, renderer.render_scene().lamps())) {

@@ -7,7 +7,7 @@
 #include "gpu_error.hh"
 #include "output_roles.hh"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -16,6 +16,7 @@
 #include <cstring>
 #include <iostream>
 #include <new>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -75,11 +76,75 @@ static void refuse_empty_values(CLI::App &app)
   }
 }
 
-/** CLI11's message, but with names as print_message() has them. */
+/** The least number of characters to insert, remove and replace. */
+static std::size_t edit_distance(std::string_view from, std::string_view to)
+{
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (const char one : from) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t i = 0; i < to.size(); i++) {
+      const std::size_t replaced = diagonal + (one != to[i] ? 1 : 0);
+      diagonal = row[i + 1];
+      row[i + 1] = std::min({row[i] + 1, row[i + 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+/** " (similar: NAMES)" with the names that \a unknown may stand for, or nothing. */
+static std::string similar_names(const std::string &unknown, std::vector<std::string> names)
+{
+  std::erase_if(names, [&](const std::string &name) {
+    return !name.starts_with(unknown) && edit_distance(unknown, name) > 1 + unknown.size() / 5;
+  });
+  return names.empty() ? "" : fmt::format(" (similar: {})", fmt::join(names, ", "));
+}
+
+static std::vector<std::string> command_names(const CLI::App &app)
+{
+  std::vector<std::string> names;
+  for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  return names;
+}
+
+static std::vector<std::string> option_names(const CLI::App &app)
+{
+  std::vector<std::string> names;
+  for (const CLI::Option *option : app.get_options()) {
+    for (const std::string &name : option->get_lnames()) {
+      names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+/** What is wrong with an \a argument that \a command does not have. */
+static std::string unknown_argument(const CLI::App &command, const std::string &argument)
+{
+  const std::string name = argument.substr(0, argument.find('='));
+  if (name.starts_with('-')) {
+    return fmt::format("there is no option '{}'{}", name, similar_names(name, option_names(command)));
+  }
+  const std::vector<std::string> commands = command_names(command);
+  return commands.empty() ? fmt::format("'{}' is one argument too many", argument)
+                          : fmt::format("there is no command '{}'{}", argument, similar_names(argument, commands));
+}
+
+/** One line with the command, the reason, and where more is said. */
 static std::string failure_message(const CLI::App *app, const CLI::Error &error)
 {
-  const std::string text = output::printable_text(error.what(), "  ");
-  return CLI::FailureMessage::simple(app, CLI::Error(error.get_name(), text, error.get_exit_code()));
+  std::string path = app->get_name();
+  const CLI::App *command = app;
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    path += ' ' + command->get_name();
+  }
+  const std::vector<std::string> unknown = app->remaining(true);
+  const std::string reason = unknown.empty() ? error.what() : unknown_argument(*command, unknown.front());
+  return fmt::format("{}: {}; '{} --help' lists more\n", path, output::printable_text(reason, "  "), path);
 }
 
 static Status run(int argc, char **argv)
@@ -112,16 +177,6 @@ static Status run(int argc, char **argv)
     std::ranges::reverse(arguments);
     app.parse(std::move(arguments));
     return status;
-  }
-  catch (const CLI::RequiredError &error) {
-    // CLI11 says that a command is required, and not that the given one is unknown.
-    const std::vector<std::string> unknown = app.remaining(true);
-    if (std::string_view(error.what()).find("subcommand") != std::string_view::npos && !unknown.empty()) {
-      print_message("gnomon: there is no command '{}': --help lists those that there are\n", unknown.front());
-      return Status::Usage;
-    }
-    static_cast<void>(app.exit(error));
-    return Status::Usage;
   }
   catch (const CLI::ParseError &error) {
     // Help and version are not errors.

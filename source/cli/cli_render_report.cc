@@ -95,8 +95,8 @@ nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &sett
   add_settings(values, options.import_options());
   nlohmann::json made = nlohmann::json::array();
   nlohmann::json left_out = nlohmann::json::array();
-  for (const eevee::FramePart &part : result.report.parts) {
-    (part.is_made ? made : left_out).push_back({{"what", part.what}, {"why", part.why}});
+  for (const eevee::FrameItem &item : result.report.items) {
+    (item.is_made ? made : left_out).push_back({{"what", item.what}, {"why", item.why}});
   }
   std::vector<std::string> warnings = scene.warnings;
   warnings.insert(warnings.end(), result.report.warnings.begin(), result.report.warnings.end());
@@ -150,9 +150,9 @@ void print_summary(const RenderOptions &options, const RenderResult &result)
     fmt::print("{} frames were skipped, because their files are complete\n", result.skipped_frame_count);
   }
   std::vector<std::string> made;
-  for (const eevee::FramePart &part : result.report.parts) {
-    if (part.is_made) {
-      made.push_back(part.what);
+  for (const eevee::FrameItem &item : result.report.items) {
+    if (item.is_made) {
+      made.push_back(item.what);
     }
   }
   fmt::print("made: {}\n", fmt::join(made, ", "));

@@ -189,11 +189,12 @@ Layers Renderer::render_layers(const scene::PlacedCamera &camera, const eevee::D
     }
   }
   if (request.has_emission) {
-    layers.emission = eevee::render_light_layer(renderer, camera, sample_count, {eevee::LightPart::Kind::Emission});
+    layers.emission =
+        eevee::render_light_layer(renderer, camera, sample_count, {eevee::LightComponent::Kind::Emission});
   }
   // It comes after those that leave it out, as in the program.
   if (request.has_world) {
-    layers.world = eevee::render_light_layer(renderer, camera, sample_count, {eevee::LightPart::Kind::World});
+    layers.world = eevee::render_light_layer(renderer, camera, sample_count, {eevee::LightComponent::Kind::World});
   }
   layers.surfaces = eevee::render_surface_layers(renderer, camera, sample_count, request.surfaces);
   return layers;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "view_interface.hh"
+#include "view_imgui.hh"
 #include "view_window_device.hh"
 
 #include <cstdint>
@@ -129,7 +129,7 @@ class Window {
   std::vector<DriverMessage> driver_messages_;
   /** nullptr: make_context_anew has failed; it may also have failed where renderer_ is empty. */
   std::unique_ptr<WindowDevice> device_;
-  std::optional<InterfaceRenderer> renderer_;
+  std::optional<ImGuiBackend> renderer_;
   /** The back buffer of this frame has been drawn. */
   bool has_screen_ = false;
   /** Number of further calls of make_context_anew that fail. */

@@ -2,7 +2,8 @@
 """Run by scripts/viewport_times in Blender's window: -- ROUNDS. Prints CPU seconds of viewports: of an engine that draws nothing, which
 are Blender's own share, of EEVEE's and of Gnomon's.
 
-A picture is that of the window's framebuffer. The first picture is the first one that is like the engine's own with LIMIT samples.
+A picture is that of the window's framebuffer. The first picture is the first one that is like the engine's own with LIMIT samples. The reference
+of the error of EEVEE is Cycles' viewport with direct light.
 """
 
 import os
@@ -16,12 +17,16 @@ import numpy
 from mathutils import Euler
 
 sys.path.insert(0, os.path.dirname(__file__))
-from window import run, viewport
+from window import mirror, run, viewport
 
 ROUNDS = int(sys.argv[-1])
 FRAMES = 5
 LIMIT = 4
 ENGINES = ('NOTHING', 'BLENDER_EEVEE', 'GNOMON')
+# Samples of the picture of EEVEE whose error Gnomon's pictures reach, and of the reference.
+ERROR_SAMPLES, REFERENCE_SAMPLES = 64, 1024
+# For so long, Cycles draws no new picture if it has drawn all of its samples.
+COMPLETE_SECONDS = 10
 # RMSE of a first picture to that of LIMIT samples.
 FIRST_RMSE = 0.1
 MEASURES = ('first picture', 'frame, lamp moves', 'frame, view turns', 'redraw of a complete picture')
@@ -101,8 +106,8 @@ def switch(engine, count):
     space().shading.type = 'RENDERED'
 
 
-def refined():
-    """(CPU seconds, picture) after each of the engine's draws, until LIMIT samples are drawn."""
+def refined(limit=LIMIT):
+    """(CPU seconds, picture) after each of the engine's draws, until `limit` samples are drawn."""
     global is_read
     begun, found, last, is_read = clock(), [], None, True
     is_complete = False
@@ -117,9 +122,41 @@ def refined():
                 time.sleep(0.001)
             last = painter.picture
         else:
-            is_complete = bpy.context.scene.render.engine == 'NOTHING' or len(found) >= LIMIT
+            is_complete = bpy.context.scene.render.engine == 'NOTHING' or len(found) >= limit
     is_read = False
     return found
+
+
+def reference():
+    """A picture of Cycles with direct light. The window is drawn until it does not change for COMPLETE_SECONDS."""
+    global is_read
+    bpy.context.scene.cycles.preview_samples, bpy.context.scene.cycles.max_bounces = REFERENCE_SAMPLES, 0
+    bpy.context.scene.cycles.use_preview_adaptive_sampling = bpy.context.scene.cycles.use_preview_denoising = False
+    switch('CYCLES', LIMIT)
+    last, changed, is_read = None, time.monotonic(), True
+    while time.monotonic() - changed < COMPLETE_SECONDS:
+        pictures.clear()
+        draw()
+        if last is None or (pictures[-1] != last).any():
+            last, changed = pictures[-1], time.monotonic()
+        yield
+    is_read = False
+    return last
+
+
+class Timed:
+    """CPU seconds of each call of a method on its thread."""
+
+    def __init__(self, owner, name):
+        self.seconds = []
+        method = getattr(owner, name)
+
+        def timed(*arguments):
+            begun = time.thread_time()
+            method(*arguments)
+            self.seconds.append(time.thread_time() - begun)
+
+        setattr(owner, name, timed)
 
 
 def frames(edit, show):
@@ -159,17 +196,25 @@ def steps():
         turned.rotate(Euler((0, 0, 0.02 * i)))
         view.view_rotation = turned
 
+    reading, editing = Timed(viewport.Viewport, 'update'), Timed(mirror.Mirror, 'show')
+    syncs = {name: [] for name in ('all', 'a lamp that moves')}
     for i in range(ROUNDS + 1):
         for engine in ENGINES:
             own = times[engine]
+            reading.seconds.clear()
+            editing.seconds.clear()
             switch(engine, LIMIT)
             curve = refined()
+            first_reading = len(reading.seconds)
             limit = curve[-1][1]
             first = next(seconds for seconds, picture in curve if rmse(picture, limit) < FIRST_RMSE)
             redrawing = frames(lambda i: None, draw)
             moving, turning = frames(move, shown), frames(turn, shown)
             lamp.location, view.view_rotation = place, rotation
             # The first round compiles shaders.
+            if i > 0 and engine == 'GNOMON':
+                syncs['all'].append(reading.seconds[0] + editing.seconds[0])
+                syncs['a lamp that moves'].append(statistics.median(reading.seconds[first_reading:]) + statistics.median(editing.seconds[1:]))
             if i > 0:
                 for name, seconds in zip(MEASURES, (first, moving, turning, redrawing)):
                     own[name].append(seconds)
@@ -180,6 +225,26 @@ def steps():
         nothing, eevee, own = map(statistics.median, zip(*rounds))
         ratio = statistics.median(gnomon / other for _, other, gnomon in rounds)
         print(f"  {name:30} {nothing:8.3f} {eevee:8.3f} {own:8.3f} {ratio:8.3f} {(own - nothing) / (eevee - nothing):16.3f}", flush=True)
+
+
+    for name, seconds in syncs.items():
+        print(f"  reading of the scene and edits, {name}: {1e3 * statistics.median(seconds):.2f} ms", flush=True)
+    yield from print_time_to_error()
+
+
+def print_time_to_error():
+    truth = yield from reference()
+    switch('BLENDER_EEVEE', ERROR_SAMPLES)
+    curve = refined(ERROR_SAMPLES)
+    error, seconds = rmse(curve[-1][1], truth), curve[-1][0]
+    yield
+    switch('GNOMON', ERROR_SAMPLES)
+    curve = refined(ERROR_SAMPLES)
+    own = next((own for own, picture in curve if rmse(picture, truth) <= error), None)
+    print(f"  EEVEE's RMSE to Cycles with {ERROR_SAMPLES} samples: {error:.4f} after {seconds:.3f} s; Gnomon: " +
+          (f"after {own:.3f} s, ratio {own / seconds:.4f}" if own is not None else "not reached"), flush=True)
+    print(f"  Gnomon's RMSE: {rmse(curve[0][1], truth):.4f} after {curve[0][0]:.3f} s, {rmse(curve[-1][1], truth):.4f} after {curve[-1][0]:.3f} s",
+          flush=True)
 
 
 run(steps, 'viewport_times', 3000)

@@ -103,7 +103,8 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
                                       "bench shadows --rounds 0"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
-    EXPECT_FALSE(finished.err.empty()) << arguments;
+    EXPECT_TRUE(finished.err.starts_with("gnomon")) << finished.err;
+    EXPECT_EQ(std::ranges::count(finished.err, '\n'), 1) << finished.err;
   }
 }
 
@@ -121,12 +122,19 @@ TEST_F(CliTest, APictureBeyondTheLimitOfTheDeviceIsWrongUsage)
   }
 }
 
-TEST_F(CliTest, AnUnknownCommandIsNamed)
+TEST_F(CliTest, AnUnknownNameIsNamedWithSimilarOnes)
 {
-  for (const auto &[arguments, name] : {std::pair("rend x.glb", "rend"), {"bench lunch", "lunch"}}) {
+  for (const auto &[arguments, reason] :
+       {std::pair("rend x.glb", "gnomon: there is no command 'rend' (similar: render); 'gnomon --help'"),
+        {"bench lunch", "gnomon bench: there is no command 'lunch'; 'gnomon bench --help'"},
+        {"x.glb -o x.png", "gnomon: there is no command 'x.glb'; "},
+        {"render x.glb -o x.png --sampels 4", "gnomon render: there is no option '--sampels' (similar: --samples); "},
+        {"render x.glb -o x.png --tex=4", "gnomon render: there is no option '--tex' (similar: --texture-size-max); "},
+        {"render x.glb -o x.png --width 4", "gnomon render: there is no option '--width'; "},
+        {"compare a.exr b.exr c.exr", "gnomon compare: 'c.exr' is one argument too many; "}}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
-    EXPECT_NE(finished.err.find("no command '" + std::string(name) + "'"), std::string::npos) << finished.err;
+    EXPECT_TRUE(finished.err.starts_with(reason)) << finished.err;
   }
 }
 

@@ -191,7 +191,7 @@ class VulkanFailure : public testing::Test {
   }
   void make()
   {
-    test::check_shader_accesses();
+    test::set_validation_options();
     auto made =
         std::make_unique<VulkanContext>(true, nullptr, [](std::string_view message) { ADD_FAILURE() << message; });
     context = made.get();

@@ -110,8 +110,8 @@ struct PcfKernel {
 /** The text of \a kernel for pcf_kernel_of. */
 [[nodiscard]] std::string text_of(const PcfKernel &kernel);
 
-/** A part of a frame, whether the engine made it, and the reason. */
-struct FramePart {
+/** An item of a frame, such as a pass or a texture, whether the engine made it, and the reason. */
+struct FrameItem {
   std::string what;
   bool is_made = false;
   std::string why;

@@ -55,13 +55,13 @@ struct Surfaces {
   std::vector<glm::vec4> albedo_roughness;
 };
 
-/** Report of the last picture of a viewport: warnings, exceeded limits, and the parts that were made or left out. */
+/** Report of the last picture of a viewport: warnings, exceeded limits, and the items that were made or left out. */
 struct Report {
   std::vector<std::string> warnings;
   std::vector<std::string> limits;
   /** Number of lamps that give light and request a shadow, but have none because of a limit. */
   int lost_shadow_count = 0;
-  std::vector<FramePart> parts;
+  std::vector<FrameItem> items;
   /** The node "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws of the last picture. */
   FrameNode tree;
   ShadowCounters shadow_counters;

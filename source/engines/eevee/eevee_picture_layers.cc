@@ -68,7 +68,7 @@ void add_coverage(std::vector<Coverage> &pixel, draw::ObjectIndex object, float 
 }  // namespace
 
 std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera, int sample_count,
-                                          const LightPart &light)
+                                          const LightComponent &light)
 {
   Settings settings = renderer.settings();
   GNOMON_ASSERT(settings.noise_threshold == 0.0F, "layers have all samples");
@@ -91,7 +91,7 @@ std::vector<glm::vec4> render_lamp_layer(SceneRenderer &renderer, const scene::P
   for (std::size_t lamp = 0; lamp < renderer.render_scene().lamps().size(); lamp++) {
     if (renderer.render_scene().lamps()[lamp].name == lamp_name) {
       const std::vector<glm::vec4> light =
-          render_light_layer(renderer, camera, sample_count, {LightPart::Kind::Lamp, lamp});
+          render_light_layer(renderer, camera, sample_count, {LightComponent::Kind::Lamp, lamp});
       sum.resize(light.size(), glm::vec4(0.0F));
       std::ranges::transform(sum, light, sum.begin(), std::plus<>());
     }

@@ -32,9 +32,9 @@ enum class LayerSource {
   Materials,
   /** The light of the lamps of one name: render_lamp_layer. */
   Lamp,
-  /** LightPart::Kind::Emission. */
+  /** LightComponent::Kind::Emission. */
   Emission,
-  /** LightPart::Kind::World. */
+  /** LightComponent::Kind::World. */
   World,
   /** The object indices of SurfaceLayers::normal. */
   Ids,
@@ -131,7 +131,7 @@ struct SurfaceLayers {
  * \pre Settings::noise_threshold is 0, here and in the next functions: layers have all samples
  */
 [[nodiscard]] std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,
-                                                        int sample_count, const LightPart &light);
+                                                        int sample_count, const LightComponent &light);
 
 /** The light of all lamps of a name. \see render_light_layer */
 [[nodiscard]] std::vector<glm::vec4> render_lamp_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,

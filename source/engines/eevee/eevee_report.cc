@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
+// The report of a frame: the items that were made or left out. It reads the same state as the drawing code.
 #include "internal/eevee_material_variants.hh"
 #include "internal/eevee_report_source.hh"
 #include "internal/eevee_surface_functions.hh"
@@ -316,30 +316,30 @@ int lost_shadow_count(const ReportSource &source)
   return count;
 }
 
-std::vector<FramePart> frame_parts(const ReportSource &source)
+std::vector<FrameItem> frame_items(const ReportSource &source)
 {
   const Data &data = source.data;
   const Settings &settings = source.settings;
   const SharedData &shared = *data.shared;
   const SceneShadows &shadows = shared.shadows;
   const int light_count = shared.lights.plan().lamps.light_count();
-  std::vector<FramePart> parts;
-  const auto part = [&](std::string what, bool is_made, std::string why, std::string why_not) {
-    parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
+  std::vector<FrameItem> items;
+  const auto item = [&](std::string what, bool is_made, std::string why, std::string why_not) {
+    items.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
   };
   const Feature f = data.features;
   const bool is_recorded = data.is_recorded;
   const std::string no_shadow = settings.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   const auto why_not = [&](std::string reason) { return is_recorded ? std::move(reason) : nothing_seen; };
-  part("light_block", bool(shared.lights.block()), fmt::format("{} lights", light_count),
+  item("light_block", bool(shared.lights.block()), fmt::format("{} lights", light_count),
        !has(f, Feature::Light)          ? "no lamp gives light"
        : has(f, Feature::LightClusters) ? "the lights are in light_texture"
                                         : nothing_seen);
-  part("light_texture", bool(shared.lights.texture()), fmt::format("{} lights", light_count),
+  item("light_texture", bool(shared.lights.texture()), fmt::format("{} lights", light_count),
        has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
   const std::shared_ptr<const scene::EmissiveSurfaces> &emission = shared.lights.plan().emission;
   const int further = shared.lights.plan().lamps.surface_point_count;
-  part("light of emissive surfaces", emission != nullptr,
+  item("light of emissive surfaces", emission != nullptr,
        emission
            ? fmt::format("{} points in each sample{}, chosen from {} patches", settings.emissive_points(),
                          further > 0 ? fmt::format(" and {} without shadows", further) : "", emission->patch_count())
@@ -347,34 +347,34 @@ std::vector<FramePart> frame_parts(const ReportSource &source)
        settings.emissive_points() > 0  ? "no material emits light"
        : settings.emissive_point_count ? "not asked for"
                                        : "a picture of one sample has none, unless asked for");
-  part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
+  item("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
        has(f, Feature::ShadowCube) ? why_not("no visible surface looks a cube up") : no_shadow);
-  part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),
+  item("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),
        has(f, Feature::ShadowMap) ? why_not("no caster can shadow a visible surface") : no_shadow);
-  part("shadow_esm", shadows.esm_count() > 0, fmt::format("{} point lamps or spots", shadows.esm_count()),
+  item("shadow_esm", shadows.esm_count() > 0, fmt::format("{} point lamps or spots", shadows.esm_count()),
        has(f, Feature::ShadowEsm) ? nothing_seen : no_shadow);
-  part("shadow_pass", !shared.shadow_pass.pass().is_empty(), "casters for the lamps' shadows",
+  item("shadow_pass", !shared.shadow_pass.pass().is_empty(), "casters for the lamps' shadows",
        has(f, any_shadow) ? nothing_seen : "no shadow");
   for (const FramePass &pass : data.depth.passes()) {
-    part(pass.pass->name(), !pass.pass->is_empty(), std::string(pass.purpose),
+    item(pass.pass->name(), !pass.pass->is_empty(), std::string(pass.purpose),
          why_not(std::string(pass.why_empty(data.state(settings)))));
   }
-  part("base colour textures", source.render_scene.images().count() > 0,
+  item("base colour textures", source.render_scene.images().count() > 0,
        fmt::format("{} images that materials look up", source.render_scene.images().count()),
        why_not("no lit or cut out material has one"));
-  part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
+  item("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? why_not("every material is Lambertian") : "no lamp gives light");
-  part("cascade tint", data.surfaces.has_tint(), "asked for",
+  item("cascade tint", data.surfaces.has_tint(), "asked for",
        !settings.has_cascade_tint    ? "not asked for"
        : shared.lights.plan().tinted ? nothing_seen
                                      : "no sun has a shadow");
-  part("film", is_recorded,
+  item("film", is_recorded,
        settings.sample_count == 0 ? "samples until the host ends the picture"
                                   : fmt::format("{} samples a pixel", settings.sample_count),
        nothing_seen);
-  part("tonemap", data.output.is_recorded(), "a target was given", data.output.target() ? nothing_seen : no_target);
-  part("programs", source.shaders.size() > 0, fmt::format("{} programs", source.shaders.size()), nothing_seen);
-  return parts;
+  item("tonemap", data.output.is_recorded(), "a target was given", data.output.target() ? nothing_seen : no_target);
+  item("programs", source.shaders.size() > 0, fmt::format("{} programs", source.shaders.size()), nothing_seen);
+  return items;
 }
 
 }  // namespace
@@ -398,7 +398,7 @@ Report Inspection::report() const
   report.tree = folder("frame", "the picture", "",
                        {program_nodes(source), pass_nodes(source), std::move(targets), std::move(blocks),
                         mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
-  report.parts = frame_parts(source);
+  report.items = frame_items(source);
   return report;
 }
 

@@ -33,8 +33,9 @@ struct Background {
   glm::vec3 color{0.0F};
 };
 
-/** A part of the light of a picture. The parts of all lamps, of the world and of emission sum to the picture. */
-struct LightPart {
+/** A component of the light of a picture. The components of all lamps, of the world and of emission sum to the picture.
+ */
+struct LightComponent {
   enum class Kind {
     All,
     /** One lamp. */
@@ -48,9 +49,9 @@ struct LightPart {
   /** Index in RenderScene::lamps, for Kind::Lamp. */
   std::size_t lamp = 0;
 
-  [[nodiscard]] bool has(Kind part) const
+  [[nodiscard]] bool has(Kind component) const
   {
-    return kind == Kind::All || kind == part;
+    return kind == Kind::All || kind == component;
   }
 };
 
@@ -67,10 +68,10 @@ struct Settings {
   ShadowSettings shadow{};
   Background background{};
   /**
-   * Draw only this part of the light. Sample positions, shadows, points of lamps and blended surfaces remain those of
-   * the picture with all light.
+   * Draw only this component of the light. Sample positions, shadows, points of lamps and blended surfaces remain those
+   * of the picture with all light.
    */
-  LightPart light{};
+  LightComponent light{};
   /**
    * Samples for each pixel of a complete picture. 0: no limit; the host ends the picture with Engine::finish.
    * Approximations that depend on the number of samples then assume `open_ended_sample_count`.

@@ -35,14 +35,14 @@ std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world
 
 bool has_background(const Settings &settings, const render_scene::RenderScene &scene)
 {
-  return settings.light.has(LightPart::Kind::World) &&
+  return settings.light.has(LightComponent::Kind::World) &&
          (settings.background.kind == Background::Kind::Color ||
           (settings.background.kind == Background::Kind::World && scene.scene().world()));
 }
 
 bool has_world_occlusion(const Settings &settings, const render_scene::RenderScene &scene)
 {
-  return settings.shadow.kind != scene::ShadowKind::None && settings.light.has(LightPart::Kind::World) &&
+  return settings.shadow.kind != scene::ShadowKind::None && settings.light.has(LightComponent::Kind::World) &&
          scene.world() && !scene.world()->rest_directions.empty();
 }
 

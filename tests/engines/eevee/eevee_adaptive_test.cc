@@ -114,7 +114,7 @@ TEST_F(AdaptiveTest, SamplesThatSeeOtherLightAreOfAllPixels)
   EXPECT_EQ(runs(adaptive, "adaptive_test"), 1U);
   EXPECT_EQ(runs(adaptive, "adaptive_test", {{0, 0}, {8, 12}}), 0U) << "a region";
   Settings part = adaptive;
-  part.light.kind = LightPart::Kind::Emission;
+  part.light.kind = LightComponent::Kind::Emission;
   EXPECT_EQ(runs(part, "adaptive_test"), 0U) << "a part of the light";
   const scene::Scene plain = scene;
   scene.set_world(scene::studio_world(camera.world_from_camera));

@@ -306,10 +306,11 @@ TEST_F(EmissionTest, PartsOfTheLightAndRangesOfSamplesSumToThePicture)
     }
   }
   const test::Picture emission =
-      test::Renderer(*device, scene, size_px, {.light = {LightPart::Kind::Emission}, .sample_count = 8})
+      test::Renderer(*device, scene, size_px, {.light = {LightComponent::Kind::Emission}, .sample_count = 8})
           .picture(camera);
   const test::Picture world =
-      test::Renderer(*device, scene, size_px, {.light = {LightPart::Kind::World}, .sample_count = 8}).picture(camera);
+      test::Renderer(*device, scene, size_px, {.light = {LightComponent::Kind::World}, .sample_count = 8})
+          .picture(camera);
   for (std::size_t i = 0; i < sum.size(); i++) {
     // Roundings of the sums.
     test::expect_near(glm::vec3(sum[i]), glm::vec3(whole.pixels[i]), 1e-6F);

@@ -25,10 +25,10 @@ class EngineTest : public testing::Test {
   }
   static bool is_made(const Report &report, const std::string &what)
   {
-    const auto part = std::ranges::find(report.parts, what, &FramePart::what);
-    EXPECT_NE(part, report.parts.end()) << what;
-    EXPECT_FALSE(part->why.empty()) << what;
-    return part->is_made;
+    const auto item = std::ranges::find(report.items, what, &FrameItem::what);
+    EXPECT_NE(item, report.items.end()) << what;
+    EXPECT_FALSE(item->why.empty()) << what;
+    return item->is_made;
   }
 
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();

@@ -16,7 +16,7 @@ namespace gnomon::eevee {
 namespace {
 
 using Radiances = std::vector<glm::vec4>;
-using Kind = LightPart::Kind;
+using Kind = LightComponent::Kind;
 
 constexpr glm::ivec2 layers_size_px(28, 20);
 
@@ -110,11 +110,11 @@ TEST_F(PictureLayersGpuTest, PartsOfTheLightSumToThePicture)
     renderer.draw(camera, {.progress = [&](int samples) { return samples < drawn; }});
     const Radiances whole = renderer.read_picture();
     Radiances sum(whole.size(), glm::vec4(0.0F));
-    for (const LightPart &part :
-         {LightPart{Kind::Lamp, 0}, LightPart{Kind::Lamp, 1}, LightPart{Kind::Emission}, LightPart{Kind::World}}) {
-      const Radiances layer = render_light_layer(renderer, camera, drawn, part);
-      EXPECT_GT(rms(layer), 0.01 * rms(whole)) << int(part.kind) << ' ' << part.lamp;
-      EXPECT_LT(rms(layer), 0.995 * rms(whole)) << int(part.kind) << ' ' << part.lamp;
+    for (const LightComponent &component : {LightComponent{Kind::Lamp, 0}, LightComponent{Kind::Lamp, 1},
+                                            LightComponent{Kind::Emission}, LightComponent{Kind::World}}) {
+      const Radiances layer = render_light_layer(renderer, camera, drawn, component);
+      EXPECT_GT(rms(layer), 0.01 * rms(whole)) << int(component.kind) << ' ' << component.lamp;
+      EXPECT_LT(rms(layer), 0.995 * rms(whole)) << int(component.kind) << ' ' << component.lamp;
       sum = sum_of(sum, layer);
     }
     EXPECT_LE(rms(sum_of(sum, whole, -1.0F)), 1e-5 * rms(whole)) << sample_count << " samples";

@@ -240,9 +240,10 @@ std::vector<SettingEdit> setting_edits(const Settings &settings)
   };
   add("background", [](Settings &one) { one.background = {Background::Kind::Color, {0.1F, 0.2F, 0.3F}}; });
   add("background", [](Settings &one) { one.background.kind = Background::Kind::World; });
-  for (const LightPart part : {LightPart{LightPart::Kind::Lamp, 0}, LightPart{LightPart::Kind::Lamp, 1},
-                               LightPart{LightPart::Kind::World}, LightPart{LightPart::Kind::Emission}}) {
-    add("light", [=](Settings &one) { one.light = part; });
+  for (const LightComponent component :
+       {LightComponent{LightComponent::Kind::Lamp, 0}, LightComponent{LightComponent::Kind::Lamp, 1},
+        LightComponent{LightComponent::Kind::World}, LightComponent{LightComponent::Kind::Emission}}) {
+    add("light", [=](Settings &one) { one.light = component; });
   }
   add("sample_first", [](Settings &one) { one.sample_first = one.sample_count - 1; });
   add("sample_end", [](Settings &one) { one.sample_end = 1; });

@@ -292,8 +292,8 @@ TEST_F(SurfaceFunctionGpuTest, EmissionIsAPartOfTheLight)
   const auto material = add_material(function("  result.emission = vec3(1.0, 2.0, 3.0);"));
   add_square(material);
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0, 0, -1}, 3.14159265F);
-  const glm::vec3 emission = render({.light = {LightPart::Kind::Emission}}).middle();
-  const glm::vec3 lamp = render({.light = {LightPart::Kind::Lamp, 0}}).middle();
+  const glm::vec3 emission = render({.light = {LightComponent::Kind::Emission}}).middle();
+  const glm::vec3 lamp = render({.light = {LightComponent::Kind::Lamp, 0}}).middle();
   test::expect_near(emission, {1, 2, 3}, 1e-6F);
   test::expect_near(lamp, glm::vec3(1), 1e-5F);
   test::expect_near(render().middle(), emission + lamp, 1e-6F);

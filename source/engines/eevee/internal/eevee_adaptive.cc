@@ -60,7 +60,7 @@ static std::string_view why_not_recorded(const FrameState &state)
   if (settings.planned_sample_count() <= adaptive_first_samples(settings.planned_sample_count())) {
     return "there is one sample";
   }
-  if (settings.light.kind != LightPart::Kind::All) {
+  if (settings.light.kind != LightComponent::Kind::All) {
     return "a part of the light is drawn";
   }
   if (state.has_lamp_points) {

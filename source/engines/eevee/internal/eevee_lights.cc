@@ -57,11 +57,11 @@ struct SceneLights::PlacedSections {
   std::size_t world = 0;
   std::size_t further = 0;
 
-  [[nodiscard]] LightPart::Kind part_of(std::size_t lamp) const
+  [[nodiscard]] LightComponent::Kind component_of(std::size_t lamp) const
   {
-    return lamp < emission                   ? LightPart::Kind::Lamp
-           : lamp < world || lamp >= further ? LightPart::Kind::Emission
-                                             : LightPart::Kind::World;
+    return lamp < emission                   ? LightComponent::Kind::Lamp
+           : lamp < world || lamp >= further ? LightComponent::Kind::Emission
+                                             : LightComponent::Kind::World;
   }
 };
 
@@ -163,13 +163,13 @@ void SceneLights::fix_surface_points(const PlacedSections &first, const Settings
   }
 }
 
-void SceneLights::select_lights(const PlacedSections &first, const LightPart &selected)
+void SceneLights::select_lights(const PlacedSections &first, const LightComponent &selected)
 {
   plan_.is_left_out.clear();
   for (int i = 0; i < plan_.lamps.light_count(); i++) {
     const std::size_t lamp = plan_.lamps.lamp_index[std::size_t(i)];
-    const bool is_kept =
-        selected.has(first.part_of(lamp)) && (selected.kind != LightPart::Kind::Lamp || selected.lamp == lamp);
+    const bool is_kept = selected.has(first.component_of(lamp)) &&
+                         (selected.kind != LightComponent::Kind::Lamp || selected.lamp == lamp);
     plan_.is_left_out.push_back(!is_kept);
     if (!is_kept) {
       leave_out(plan_.lamps.lights[std::size_t(i)]);

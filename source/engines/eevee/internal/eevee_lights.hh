@@ -14,7 +14,7 @@ namespace gnomon::eevee {
 
 class SceneShadows;
 
-struct LightPart;
+struct LightComponent;
 struct ResourceReport;
 
 /** Entries of `light_block` with Feature::LightClusters. \see SceneLights::block */
@@ -131,7 +131,7 @@ class SceneLights {
   /** Give each light of an emissive surface its point: those of one sample do not move, so that shadows are kept. */
   void fix_surface_points(const PlacedSections &first, const Settings &settings);
   /** Set PlannedLights::is_left_out, and leave these lights out. */
-  void select_lights(const PlacedSections &first, const LightPart &selected);
+  void select_lights(const PlacedSections &first, const LightComponent &selected);
   void write_block(gpu::Device &device);
   void write_texture(gpu::Device &device);
   /** The light \a point.light at \a point, as a sample draws it. */

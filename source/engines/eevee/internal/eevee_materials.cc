@@ -55,7 +55,7 @@ void DrawnMaterials::update(const render_scene::RenderScene &render_scene, std::
 void SceneMaterials::make(render_scene::RenderScene &scene, const Settings &settings, const DrawnMaterials &drawn)
 {
   using render_scene::MaterialTable;
-  const bool has_emission = settings.light.has(LightPart::Kind::Emission);
+  const bool has_emission = settings.light.has(LightComponent::Kind::Emission);
   scene.upload(drawn.widest_class);
   if (has_emission) {
     without_emission_.reset();

@@ -112,7 +112,8 @@ void SceneWorld::write_level(gpu::Device &device, int level, std::span<const glm
 void SceneWorld::update_light(const render_scene::RenderScene &scene, Feature features, const Settings &settings,
                               const RestDirections &rest)
 {
-  const Key key{scene.world_revision(), settings.planned_sample_count(), !settings.light.has(LightPart::Kind::World)};
+  const Key key{scene.world_revision(), settings.planned_sample_count(),
+                !settings.light.has(LightComponent::Kind::World)};
   if (std::exchange(key_, key) != key || !has(features, Feature::World)) {
     block_ = {};
     levels_ = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "view_interface.hh"
+#include "view_imgui.hh"
 
 #include "shader_check_reflection.hh"
 #include "shader_files.hh"
@@ -85,7 +85,7 @@ gpu::ResourceId texture_of(const ImDrawCmd &command)
 
 }  // namespace
 
-InterfaceRenderer::InterfaceRenderer(gpu::Device &device)
+ImGuiBackend::ImGuiBackend(gpu::Device &device)
     : device_(device),
       linear_(device.create_sampler({.name = "interface_linear", .filter = gpu::Filter::Linear})),
       enlarging_(device.create_sampler(
@@ -107,12 +107,12 @@ InterfaceRenderer::InterfaceRenderer(gpu::Device &device)
   ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
 }
 
-InterfaceRenderer::~InterfaceRenderer()
+ImGuiBackend::~ImGuiBackend()
 {
   ImGui::GetIO().Fonts->SetTexID(nullptr);
 }
 
-void InterfaceRenderer::append_within(Polygon polygon, glm::vec2 low, glm::vec2 high)
+void ImGuiBackend::append_within(Polygon polygon, glm::vec2 low, glm::vec2 high)
 {
   for (int side = 0; side < 4 && polygon.count > 0; side++) {
     const int axis = side / 2;
@@ -147,7 +147,7 @@ void InterfaceRenderer::append_within(Polygon polygon, glm::vec2 low, glm::vec2 
   }
 }
 
-void InterfaceRenderer::gather()
+void ImGuiBackend::gather()
 {
   const ImDrawData &data = *ImGui::GetDrawData();
   const auto pixel_of = [&](float x, float y) {
@@ -181,7 +181,7 @@ void InterfaceRenderer::gather()
   }
 }
 
-void InterfaceRenderer::draw(const draw::Target &target, glm::ivec2 size_px)
+void ImGuiBackend::draw(const draw::Target &target, glm::ivec2 size_px)
 {
   gather();
   const std::size_t size_bytes = std::max(vertices_.size(), std::size_t(1)) * sizeof(Vertex);

@@ -3,7 +3,7 @@
 #include "gpu_device_fixture.hh"
 #include "gpu_read.hh"
 
-#include "view_interface.hh"
+#include "view_imgui.hh"
 
 #include <imgui.h>
 #include <glm/gtc/type_precision.hpp>
@@ -26,7 +26,7 @@ class ViewInterfaceGpu : public test::SharedDeviceTest {
       ImGui::CreateContext();
       ImGui::GetIO().DisplaySize = {float(size_px.x), float(size_px.y)};
       ImGui::GetIO().IniFilename = nullptr;
-      renderer = std::make_unique<InterfaceRenderer>(*device);
+      renderer = std::make_unique<ImGuiBackend>(*device);
       texture = device->create_texture({.name = "window", .width = size_px.x, .height = size_px.y});
       framebuffer = device->create_framebuffer({"window", {{&texture}}, {}});
     }
@@ -48,7 +48,7 @@ class ViewInterfaceGpu : public test::SharedDeviceTest {
     return gpu::read_as<glm::u8vec4>(*device, texture);
   }
 
-  std::unique_ptr<InterfaceRenderer> renderer;
+  std::unique_ptr<ImGuiBackend> renderer;
   gpu::Texture texture;
   gpu::Framebuffer framebuffer;
 };

@@ -11,13 +11,13 @@
 namespace gnomon::view {
 
 /** Draws the user interface of Dear ImGui by a device, which must outlive it. \pre there is a context of Dear ImGui */
-class InterfaceRenderer {
+class ImGuiBackend {
  public:
   /** Make the texture of the font and the program. \throws gpu::Error */
-  explicit InterfaceRenderer(gpu::Device &device);
-  ~InterfaceRenderer();
-  InterfaceRenderer(const InterfaceRenderer &) = delete;
-  InterfaceRenderer &operator=(const InterfaceRenderer &) = delete;
+  explicit ImGuiBackend(gpu::Device &device);
+  ~ImGuiBackend();
+  ImGuiBackend(const ImGuiBackend &) = delete;
+  ImGuiBackend &operator=(const ImGuiBackend &) = delete;
 
   /**
    * Replace the content of \a target, a framebuffer of \a size_px, by what ImGui::Render has made last. An ImTextureID
