@@ -96,7 +96,7 @@ static std::size_t edit_distance(std::string_view from, std::string_view to)
 static std::string similar_names(const std::string &unknown, std::vector<std::string> names)
 {
   std::erase_if(names, [&](const std::string &name) {
-    return !name.starts_with(unknown) && edit_distance(unknown, name) > 1 + unknown.size() / 5;
+    return !name.starts_with(unknown) && edit_distance(unknown, name) > unknown.size() / 4;
   });
   return names.empty() ? "" : fmt::format(" (similar: {})", fmt::join(names, ", "));
 }
