@@ -2,8 +2,7 @@
 """Run by scripts/viewport_times in Blender's window: -- ROUNDS. Prints CPU seconds of viewports: of an engine that draws nothing, which
 are Blender's own share, of EEVEE's and of Gnomon's.
 
-A picture is that of the window's framebuffer. The first picture is the first one that is like the engine's own with LIMIT samples. The reference
-of the error of EEVEE is Cycles' viewport with direct light.
+A picture is that of the window's framebuffer. The first picture is the first one that is like the engine's own with LIMIT samples.
 """
 
 import os
@@ -23,10 +22,6 @@ ROUNDS = int(sys.argv[-1])
 FRAMES = 5
 LIMIT = 4
 ENGINES = ('NOTHING', 'BLENDER_EEVEE', 'GNOMON')
-# Samples of the picture of EEVEE whose error Gnomon's pictures reach, and of the reference.
-ERROR_SAMPLES, REFERENCE_SAMPLES = 64, 1024
-# For so long, Cycles draws no new picture if it has drawn all of its samples.
-COMPLETE_SECONDS = 10
 # RMSE of a first picture to that of LIMIT samples.
 FIRST_RMSE = 0.1
 MEASURES = ('first picture', 'frame, lamp moves', 'frame, view turns', 'redraw of a complete picture')
@@ -106,8 +101,8 @@ def switch(engine, count):
     space().shading.type = 'RENDERED'
 
 
-def refined(limit=LIMIT):
-    """(CPU seconds, picture) after each of the engine's draws, until `limit` samples are drawn."""
+def refined():
+    """(CPU seconds, picture) after each of the engine's draws, until LIMIT samples are drawn."""
     global is_read
     begun, found, last, is_read = clock(), [], None, True
     is_complete = False
@@ -122,26 +117,9 @@ def refined(limit=LIMIT):
                 time.sleep(0.001)
             last = painter.picture
         else:
-            is_complete = bpy.context.scene.render.engine == 'NOTHING' or len(found) >= limit
+            is_complete = bpy.context.scene.render.engine == 'NOTHING' or len(found) >= LIMIT
     is_read = False
     return found
-
-
-def reference():
-    """A picture of Cycles with direct light. The window is drawn until it does not change for COMPLETE_SECONDS."""
-    global is_read
-    bpy.context.scene.cycles.preview_samples, bpy.context.scene.cycles.max_bounces = REFERENCE_SAMPLES, 0
-    bpy.context.scene.cycles.use_preview_adaptive_sampling = bpy.context.scene.cycles.use_preview_denoising = False
-    switch('CYCLES', LIMIT)
-    last, changed, is_read = None, time.monotonic(), True
-    while time.monotonic() - changed < COMPLETE_SECONDS:
-        pictures.clear()
-        draw()
-        if last is None or (pictures[-1] != last).any():
-            last, changed = pictures[-1], time.monotonic()
-        yield
-    is_read = False
-    return last
 
 
 class Timed:
@@ -229,22 +207,6 @@ def steps():
 
     for name, seconds in syncs.items():
         print(f"  reading of the scene and edits, {name}: {1e3 * statistics.median(seconds):.2f} ms", flush=True)
-    yield from print_time_to_error()
-
-
-def print_time_to_error():
-    truth = yield from reference()
-    switch('BLENDER_EEVEE', ERROR_SAMPLES)
-    curve = refined(ERROR_SAMPLES)
-    error, seconds = rmse(curve[-1][1], truth), curve[-1][0]
-    yield
-    switch('GNOMON', ERROR_SAMPLES)
-    curve = refined(ERROR_SAMPLES)
-    own = next((own for own, picture in curve if rmse(picture, truth) <= error), None)
-    print(f"  EEVEE's RMSE to Cycles with {ERROR_SAMPLES} samples: {error:.4f} after {seconds:.3f} s; Gnomon: " +
-          (f"after {own:.3f} s, ratio {own / seconds:.4f}" if own is not None else "not reached"), flush=True)
-    print(f"  Gnomon's RMSE: {rmse(curve[0][1], truth):.4f} after {curve[0][0]:.3f} s, {rmse(curve[-1][1], truth):.4f} after {curve[-1][0]:.3f} s",
-          flush=True)
 
 
 run(steps, 'viewport_times', 3000)
