@@ -21,7 +21,7 @@ float blended_opacity(float texel)
   return clamp(full_materials[surface_material].opacity * surface_color.a * texel, 0.0, 1.0);
 }
 
-/** As is_cut_out of eevee_base_color_lib.glsl. The alpha is multiplied by that of the vertex colour. */
+/** The same as is_cut_out of eevee_base_color_lib.glsl. The alpha is multiplied by that of the vertex colour. */
 bool is_cut_out(float mask_cutoff)
 {
   if (mask_cutoff <= 0.0) {

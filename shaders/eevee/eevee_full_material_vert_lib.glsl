@@ -25,7 +25,7 @@ layout(location = 12) flat out mat3 surface_object_from_world;
 layout(location = 15) flat out vec3 surface_lens;
 #  endif
 
-/** As input_uv, of the texture with number \a index in LayerData. */
+/** The same as input_uv, of the texture with number \a index in LayerData. */
 vec2 layer_uv(uint material, int index)
 {
   return transformed_uv(layer_materials[material].uv_rows[2 * index], layer_materials[material].uv_rows[2 * index + 1]);

@@ -80,7 +80,7 @@ bool is_pixel_cut_out(float mask_cutoff)
   // A pattern of several pixels that repeats: its levels differ by their rounding to 1/255 alone. The last levels of a texture are equal for
   // any pattern.
   bool has_farther = lod.y + 5.0 <= float(textureQueryLevels(base_color_texture));
-  // Those of a single shape are equal twice in few places.
+  // Shares of a single shape are equal twice in few places.
   vec2 changes = abs(share_around - shares_farther);
   float is_repeated = has_farther ? min(4.0 * level - 3.0, 1.0) * (2.0 - 256.0 * max(changes.x, changes.y)) : 0.0;
   float weight = clamp(max(is_fine, is_repeated), 0.0, 1.0);

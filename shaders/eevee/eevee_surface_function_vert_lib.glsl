@@ -6,7 +6,7 @@
 layout(location = 10) out vec4 surface_mesh_uvs;
 layout(location = 11) out vec3 surface_position_os;
 
-/** Those that no other library writes. */
+/** Writes the varyings that no other library writes. */
 void write_function_varyings()
 {
   surface_mesh_uvs = vec4(uv, second_uv);

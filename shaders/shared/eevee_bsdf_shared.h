@@ -37,7 +37,7 @@ SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alph
   return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
 }
 
-/** As ggx_masking_over_2cos, for \a direction in the axes of anisotropic_ggx_lobe. */
+/** The same as ggx_masking_over_2cos, for \a direction in the axes of anisotropic_ggx_lobe. */
 SHARED_FUNCTION float anisotropic_masking_over_2cos(vec3 direction, vec2 alphas)
 {
   vec3 stretched = vec3(alphas.x * direction.x, alphas.y * direction.y, direction.z);
@@ -45,7 +45,7 @@ SHARED_FUNCTION float anisotropic_masking_over_2cos(vec3 direction, vec2 alphas)
 }
 
 /**
- * As ggx_lobe, with an alpha for each of two axes in the surface (Burley 2012, Physically Based Shading at Disney; Heitz 2014).
+ * The same as ggx_lobe, with an alpha for each of two axes in the surface (Burley 2012, Physically Based Shading at Disney; Heitz 2014).
  * The unit vectors are in the axes of \a alphas and the normal, z, which is in (0, 1].
  */
 SHARED_FUNCTION float anisotropic_ggx_lobe(vec3 to_light, vec3 to_viewer, vec3 half_vector, vec2 alphas)

@@ -94,7 +94,7 @@ struct LightShape {
    * Rectangle, ellipse: 1. 0: the lamp is shaded as a point at LightData::position_ws, or by the direction forward_ws.
    */
   float extent;
-  /** As axis_x_ws, for the other axis. */
+  /** The same as axis_x_ws, for the other axis. */
   vec3 axis_y_ws;
   /** With highlight_extent: HIGHLIGHT_LOBE_POINTS divided by the number of samples. */
   float highlight_points_share;

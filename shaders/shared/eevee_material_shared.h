@@ -104,7 +104,7 @@ struct LayerData {
   /** xy: cosine and sine of the angle from the tangent to the rougher direction. z: strength, in [0, 1]. */
   vec3 anisotropy;
   float coat_normal_scale;
-  /** As FullMaterialData::uv_rows. */
+  /** The same as FullMaterialData::uv_rows. */
   vec4 uv_rows[2 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT)];
 };
 SHARED_ASSERT_SIZE(LayerData, 64 + 32 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT))

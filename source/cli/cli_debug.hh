@@ -21,7 +21,7 @@ struct DebugView {
   };
   Kind kind = Kind::None;
   std::string lamp;
-  /** As for eevee::find_layer; empty for all layers. */
+  /** A name for eevee::find_layer; empty for all layers. */
   std::string layer;
 };
 

@@ -121,7 +121,7 @@ static std::vector<std::string> option_names(const CLI::App &app)
   return names;
 }
 
-/** What is wrong with an \a argument that \a command does not have. */
+/** The error of an \a argument that \a command does not have. */
 static std::string unknown_argument(const CLI::App &command, const std::string &argument)
 {
   const std::string name = argument.substr(0, argument.find('='));

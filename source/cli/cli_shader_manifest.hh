@@ -18,7 +18,7 @@ struct ShaderManifest {
   /** Permutations of one program follow each other. */
   std::vector<Entry> entries;
   std::vector<std::string> include_folders;
-  /** As after -W. */
+  /** The text after -W. */
   std::vector<std::string> levels;
   std::vector<std::string> features;
 };

@@ -28,13 +28,13 @@ inline constexpr const char *planned_file_metadata = "gnomon:plan_file";
 struct WorkPart {
   /** Index of WorkPlan::scenes. */
   std::size_t scene = 0;
-  /** As `--frames` with `--step`; empty: one picture without an animation. Several frames are whole pictures. */
+  /** The value of `--frames` with `--step`; empty: one picture without an animation. Several frames are whole pictures. */
   std::string frames{};
-  /** As `--tile`; empty: all rows. */
+  /** The value of `--tile`; empty: all rows. */
   std::string tile{};
-  /** As `--sample-range`; empty: all samples. */
+  /** The value of `--sample-range`; empty: all samples. */
   std::string samples{};
-  /** As `--output`. */
+  /** The value of `--output`. */
   std::string output{};
 
   /** Whether its file is a part of a picture, for `gnomon merge --plan`. */

@@ -46,7 +46,7 @@ enum class Composition {
   /** Replaces colour, alpha and, with Target::depth, depth. Pixels without a surface get the host's farthest depth. */
   Replace,
   /**
-   * As Replace, but the colour is not multiplied by alpha, as PNG files store it. Exposure and view transform apply to
+   * The same as Replace, but the colour is not multiplied by alpha, as PNG files store it. Exposure and view transform apply to
    * the colour of the surfaces that cover a part of the pixel.
    */
   ReplaceStraight,

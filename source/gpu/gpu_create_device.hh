@@ -28,10 +28,10 @@ using Host = std::variant<std::monostate, GlHost, VulkanHost>;
 struct DeviceDesc {
   Backend backend = Backend::Auto;
   Host host{};
-  /** As VulkanDeviceDesc::compile_spirv. Empty: Vulkan does not start. */
+  /** The same as VulkanDeviceDesc::compile_spirv. Empty: Vulkan does not start. */
   SpirvCompiler compile_spirv{};
   MessageSink sink{};
-  /** As GlDeviceDesc::shader_cache_folder. */
+  /** The same as GlDeviceDesc::shader_cache_folder. */
   std::filesystem::path shader_cache_folder{};
 };
 

@@ -550,7 +550,7 @@ struct VulkanDeviceDesc {
    */
   bool is_debug = false;
   MessageSink sink{};
-  /** As GlDeviceDesc::shader_cache_folder. */
+  /** The same as GlDeviceDesc::shader_cache_folder. */
   std::filesystem::path shader_cache_folder{};
 };
 

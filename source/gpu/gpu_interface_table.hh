@@ -13,13 +13,13 @@ namespace gnomon::gpu {
  * exactly the bindings that it reads, because binding any other name must have no effect.
  */
 struct InterfaceTable {
-  /** As ShaderInterface::Member. */
+  /** The same as ShaderInterface::Member. */
   struct Member {
     std::string_view name;
     std::uint32_t offset_bytes;
     std::uint32_t size_bytes;
   };
-  /** As ShaderInterface::Binding. */
+  /** The same as ShaderInterface::Binding. */
   struct Binding {
     std::string_view name;
     BindingKind kind;
@@ -35,9 +35,9 @@ struct InterfaceTable {
     /** Mask: bit i is set if the variant reads bindings[i]. */
     std::uint64_t bindings;
     bool has_push_constants;
-    /** As ShaderInterface::reads_object. */
+    /** The same as ShaderInterface::reads_object. */
     bool reads_object;
-    /** As ShaderInterface::varying_locations. */
+    /** The same as ShaderInterface::varying_locations. */
     int varying_locations;
 
     bool operator==(const Variant &) const = default;

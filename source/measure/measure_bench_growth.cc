@@ -86,7 +86,7 @@ GrowthCost rounds_of(std::string work, std::vector<double> counts, int rounds,
   return cost;
 }
 
-/** Those of \a counts up to \a most. */
+/** The values of \a counts up to \a most. */
 std::vector<double> up_to(double most, std::vector<double> counts)
 {
   std::erase_if(counts, [most](double count) { return count > most; });

@@ -72,10 +72,10 @@ struct WholeSpecular {
   double covered = 0.0;
 };
 
-/** As the engine has them: the form factor, and linearly transformed cosines. \see eevee_lamp_shape_lib.glsl */
+/** The engine's formulas: the form factor, and linearly transformed cosines. \see eevee_lamp_shape_lib.glsl */
 [[nodiscard]] double whole_diffuse(const LampShape &lamp);
 [[nodiscard]] WholeSpecular whole_specular(const LampShape &lamp, const SpecularLobe &lobe);
-/** As the engine has it with multiple scattering, without the light that is scattered again. */
+/** The engine's formula with multiple scattering, without the light that is scattered again. */
 [[nodiscard]] double whole_specular_multi(const LampShape &lamp, const SpecularLobe &lobe);
 
 /**

@@ -111,7 +111,7 @@ class Renderer {
   std::pair<std::vector<glm::vec4>, bool> refine(const scene::PlacedCamera &camera, double seconds);
   /** The array of the last refine(), which its next call returns again if the picture is the same. */
   py::object refined = py::none();
-  /** As refine(), into \a target. \return whether the picture is complete */
+  /** The same as refine(), into \a target. \return whether the picture is complete */
   bool draw(const scene::PlacedCamera &camera, double seconds, const draw::Target &target);
   [[nodiscard]] Report report();
   /** \throws gpu::Error */

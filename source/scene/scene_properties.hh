@@ -608,7 +608,7 @@ struct Material {
   TextureSlot coat_texture{};
   /** Green is multiplied with coat_roughness. */
   TextureSlot coat_roughness_texture{};
-  /** As normal_texture, of the coat; without it the coat is as smooth as the mesh, whatever normal_texture is. */
+  /** The normal_texture of the coat; without it the coat is as smooth as the mesh, whatever normal_texture is. */
   TextureSlot coat_normal_texture{};
   float coat_normal_scale = 1.0F;
   glm::vec3 sheen_color{0.0F};

@@ -25,9 +25,9 @@ enum class CheckTarget : std::uint8_t {
 
 struct TargetName {
   CheckTarget target;
-  /** As an option of the command line. */
+  /** The name as an option of the command line. */
   std::string_view name;
-  /** As people write it. */
+  /** The name as people write it. */
   std::string_view text;
 };
 
@@ -123,7 +123,7 @@ struct CheckMessage {
 
 /** The errors of a stage that are reported. */
 enum class StageErrors : std::uint8_t {
-  /** Those before glslang stops, which is at the first error of most kinds. */
+  /** The errors before glslang stops, which is at the first error of most kinds. */
   First,
   /** All, as glslc reports. Some mistakes crash glslang then: use it in a process that may end. */
   All,
@@ -196,7 +196,7 @@ struct ProgramCheck {
 };
 
 /**
- * As check_shader(), for shaders that were not written for Gnomon: glslang itself reads includes and conditions, and
+ * The same as check_shader(), for shaders that were not written for Gnomon: glslang itself reads includes and conditions, and
  * rules that only Gnomon's own shaders need are off.
  */
 [[nodiscard]] ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files,

@@ -114,12 +114,12 @@ struct ProgramInterface {
   std::vector<StageVariable> inputs;
   std::vector<StageVariable> outputs;
   /**
-   * Those outside of blocks that a stage uses, sorted by location. Only OpenGL has them. Structs are listed by their
+   * Uniforms outside of blocks that a stage uses, sorted by location. Only OpenGL has them. Structs are listed by their
    * members, such as `lights[0].color`, and an array of structs by its first element.
    */
   std::vector<StageVariable> uniforms;
   /**
-   * Those that a stage uses, sorted by kind, set, slot and name. Several stages share one only if it is the same in
+   * Bindings that a stage uses, sorted by kind, set, slot and name. Several stages share one only if it is the same in
    * them.
    */
   std::vector<ProgramBinding> bindings;

@@ -186,7 +186,7 @@ class Document {
     const bool is_shown = clicked_ && clicked_->node == selected && clicked_revision_ == scene_.revision();
     return is_shown ? &*clicked_ : nullptr;
   }
-  /** Those of selection() that are not below another one. */
+  /** The nodes of selection() that are not below another one. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_roots() const;
   /** The selected nodes and their descendants, each once. */
   [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_nodes() const;

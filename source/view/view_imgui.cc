@@ -69,7 +69,7 @@ std::optional<std::string_view> shader_file(std::string_view path)
                                          : shaders::file(path);
 }
 
-/** As in interface_lib. */
+/** The same as in interface_lib. */
 struct Constants {
   glm::vec2 size_px;
   int first_vertex;

@@ -152,7 +152,7 @@ def steps():
         assert picture[0].shape != before[0].shape or (picture[0] != before[0]).any(), f"{change.__name__} changes nothing"
         print("as collected anew after:", change.__name__, f"{time.monotonic() - begun:.1f} s", flush=True)
 
-    # What is not drawn is named.
+    # Things that are not drawn are named.
     assert not viewport.remarks(), viewport.remarks()
     bpy.ops.mesh.primitive_monkey_add()
     material = bpy.data.materials.new('odd')

@@ -60,7 +60,7 @@ TEST_F(RadiancePictureTest, OtherPrimariesAreNamed)
   EXPECT_FALSE(has_warning(""));
   EXPECT_FALSE(has_warning("PRIMARIES=0.6400 0.3300 0.3000 0.6000 0.1500 0.0600 0.3127 0.3290\n"));
   EXPECT_FALSE(has_warning("PRIMARIES= .64 .33 .3\t.6 .15 .06 .313 .329\r\n"));
-  // Those of Radiance itself.
+  // The first are Radiance's own primaries.
   EXPECT_TRUE(has_warning("PRIMARIES=0.640 0.330 0.290 0.600 0.150 0.060 0.333 0.333\n"));
   EXPECT_TRUE(has_warning("PRIMARIES=0.7347 0.2653 0 1 0.0001 -0.077 0.32168 0.33767\n"));
   EXPECT_TRUE(has_warning("PRIMARIES=0.64 0.33\n"));

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   for (const bool has_16_bits : {false, true}) {
     try {
       const std::unique_ptr<image::Decoder> decoder = image::open_decoder({data, size});
-      // As callers do.
+      // Callers do the same.
       if (std::uint64_t(decoder->width()) * decoder->height() > (1U << 20U)) {
         return 0;
       }

@@ -466,7 +466,7 @@ TEST(GltfInstances, AreSeenWhenTheirNodeIs)
   const auto &nodes = scene.nodes();
   const auto thing = std::ranges::find_if(nodes, named);
   ASSERT_NE(thing, nodes.end());
-  // As an animation does.
+  // An animation does the same.
   scene.edit((*thing).handle, [](scene::Node &node) { node.is_visible = true; });
   EXPECT_EQ(scene.objects().size(), 1U);
 }

@@ -247,7 +247,7 @@ TEST_F(GltfExportAnimation, MorphTargetsReadBackWithTheirWeights)
   primitive["targets"] = {{{"POSITION", up}, {"NORMAL", turned}}, {{"POSITION", right}}, {{"POSITION", turned}}};
   builder.document["meshes"][0]["weights"] = {0.5, 0.0, 0.25};
   builder.node({{"name", "other"}, {"mesh", 0}, {"weights", {0.0, 1.0, 0.0}}});
-  // As many as the numbers of a vector.
+  // Each key has three weights, as many numbers as a vector.
   add_channel(builder, {{"node", 0}, {"path", "weights"}}, {0, 1}, {0.5F, 0, 1, 1, 0.5F, -1}, "SCALAR");
   Scene scene = import(builder);
   scene::pose(scene, scene.animations[0], 0.3);

@@ -67,7 +67,7 @@ Bytes with_stated_size(Bytes webp)
   return webp;
 }
 
-/** As image_file, and for WebP, whose three channels become four. */
+/** The same as image_file, and for WebP, whose three channels become four. */
 Bytes noise_file(const std::string &extension, int edge, std::mt19937 &random)
 {
   const int channel_count = extension == "jpg" ? 3 : 4;

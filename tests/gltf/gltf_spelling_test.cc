@@ -176,7 +176,7 @@ TEST(GltfSpelling, DataUrisOfEachSpellingAreRead)
         std::ranges::replace(data, '/', '_');
         return data;
       },
-      // As mail breaks lines.
+      // Mail breaks lines like this.
       [](const std::string &data) { return data.substr(0, 16) + "\r\n " + data.substr(16) + "\n"; },
       [](const std::string &data) { return data.substr(0, data.find('=')); },
       [](const std::string &data) { return data + "===="; }, [](const std::string &data) { return data + "%3D%3d"; }};

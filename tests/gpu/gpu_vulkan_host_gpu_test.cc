@@ -180,7 +180,7 @@ TEST_F(VulkanHostGpu, WaitsForAndSignalsTheSemaphoresOfEachFrame)
     host->clear(image, before, {acquired});
     Packet packet;
     {
-      // As a thread that prepares frames does.
+      // A thread that prepares frames does the same.
       const Recording recording(*device, packet);
       device->begin_image(framebuffer, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, {acquired});
       device->submit(picture.list(framebuffer, {.color_load = LoadAction::Load, .scissor = {{0, 0}, {1, 1}}}));

@@ -17,7 +17,7 @@ namespace gnomon::test {
  * call is made.
  */
 void expect_state_kept(const char *name, const std::function<void()> &call);
-/** As make_host_calls, with expect_state_kept, into the framebuffer of \a target. */
+/** The same as make_host_calls, with expect_state_kept, into the framebuffer of \a target. */
 void expect_state_kept_by_all_calls(const scene::Scene &scene, const draw::Target &target);
 /**
  * Edits of tests/engines/scene_edits.hh, in random order. Each call of the function makes one, or takes it back, and

@@ -705,7 +705,7 @@ class Pictures(unittest.TestCase):
                 except gnomon.DeviceError as error:
                     texts.append(str(error))
             held.clear()
-            # What needs no device works.
+            # Calls that need no device work.
             scene = gnomon.load("examples/scenes/full.gltf")
             results.put((texts, len(scene.nodes)))
 
@@ -1009,7 +1009,7 @@ class Hosts(unittest.TestCase):
         self.context.make_current(False)
         with self.assertRaisesRegex(gnomon.DeviceError, "current"):
             renderer.draw(0.05, framebuffer, (32, 18))
-        # What was on the device is freed by the next call with the context.
+        # Memory that was on the device is freed by the next call with the context.
         del renderer
         with self.assertRaisesRegex(gnomon.DeviceError, "current"):
             device.memory_bytes

@@ -112,7 +112,7 @@ TEST(AnisotropicGgxLobe, IsReciprocalAndFiniteAtTheEnds)
   }
 }
 
-/** As GgxDistribution.ProjectsToOne. Over slopes r (α_x cos φ, α_y sin φ) with r² = u / (1 - u), the integrand is
+/** The same as GgxDistribution.ProjectsToOne. Over slopes r (α_x cos φ, α_y sin φ) with r² = u / (1 - u), the integrand is
  * constant. */
 TEST(AnisotropicGgxLobe, DistributionProjectsToOne)
 {

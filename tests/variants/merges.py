@@ -12,7 +12,7 @@ from variants import expect, quad_scene, write_picture
 
 VALUES = {
     "parts": ["tiles", "ranges"],
-    # What differs between the parts.
+    # Options that differ between the parts.
     "change": ["nothing", "setting", "setting", "setting", "scene", "world", "harmless", "harmless"],
     "count": [0, 1, 2, 4, 8],
     "frame": [False, False, True],
@@ -25,7 +25,7 @@ TEXTS = {
     "background": ["world", "0.25,0.5,1", "1,1,1", "none"],
     "animation": ["turn", "move"],
 }
-# What parts of a picture cannot have, and what makes or names the parts.
+# Options that parts of a picture cannot have, and those that make or name the parts.
 LEFT_OUT = {"output", "size", "noise-threshold", "debug", "aov", "world-layer", "frames", "step", "resume", "sample-range", "tile", "max-error",
             "max-time", "report", "time-limit", "part", "stop-after", "checkpoint", "backend", "repeat", "redraw-shadows"}
 # Beside the settings whose help says so.

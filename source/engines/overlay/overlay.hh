@@ -49,7 +49,7 @@ struct Hit {
 
 /** Which of the objects in an area of a picture Overlay::select finds. */
 enum class Reach {
-  /** Those that are seen there. */
+  /** Objects that are seen there. */
   Visible,
   /** All, also where other objects cover them. */
   Through

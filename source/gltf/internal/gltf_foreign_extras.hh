@@ -32,7 +32,7 @@ class ForeignExtras {
   {
     return model_.foreign_extras.contains({array, index});
   }
-  /** Those of the element \a index of \a array of the document; empty: there are none, or too many before them. */
+  /** The extras of the element \a index of \a array of the document; empty: there are none, or too many before them. */
   [[nodiscard]] std::string of(std::string_view array, int index);
 
  private:

@@ -108,7 +108,7 @@ struct Model {
     std::vector<double> weights;
   };
   using Extra = std::variant<bool, double, std::string, std::vector<double>>;
-  /** Those whose key begins with "gnomon_". */
+  /** The extras whose key begins with "gnomon_". */
   using Extras = std::map<std::string, Extra, std::less<>>;
   /** EXT_mesh_gpu_instancing: accessors with one element for each instance; -1: absent. */
   struct Instances {
@@ -283,7 +283,7 @@ struct Model {
    */
   std::map<std::pair<std::string_view, int>, std::string> foreign_extras;
 
-  /** That of `scene`, or the first; nullptr: the file has none. */
+  /** The scene that `scene` names, or the first; nullptr: the file has none. */
   [[nodiscard]] const Scene *default_scene() const
   {
     return scenes.empty() ? nullptr : &scenes[static_cast<std::size_t>(scene < 0 ? 0 : scene)];

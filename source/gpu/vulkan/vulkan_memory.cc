@@ -44,7 +44,7 @@ Wanted wanted_for(MemoryUse use)
 std::optional<MemoryPlace> place_in(MemoryBlock &block, std::uint32_t count, VkDeviceSize alignment)
 {
   const auto granules = std::uint32_t(block.size_bytes / granule_bytes);
-  // As many more as an aligned first one may need.
+  // The first granules may be needed to align the rest.
   const auto taken = count + std::uint32_t(std::max(alignment, granule_bytes) / granule_bytes) - 1;
   const std::uint32_t first = block.ranges.allocate(taken);
   if (std::size_t(first) + taken > granules) {

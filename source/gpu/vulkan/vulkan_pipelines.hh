@@ -17,7 +17,7 @@ namespace gnomon::gpu {
 
 /** Types of the components of all vertex streams. */
 using VertexTypes = std::array<VertexType, vertex_stream_count>;
-/** Those of batches in the shared buffers, or of \a host. */
+/** The types of batches in the shared buffers, or of \a host. */
 [[nodiscard]] VertexTypes vertex_types(const HostBatch *host = nullptr);
 
 [[nodiscard]] VkFormat vertex_format(int component_count, VertexType type);

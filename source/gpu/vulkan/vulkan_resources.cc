@@ -626,7 +626,7 @@ void VulkanDevice::texture_read(ResourceId id, int layer, std::span<std::byte> t
 {
   VulkanTexture &texture = textures_.at(id);
   const std::string what = fmt::format("texture '{}'", texture.desc.name);
-  // As an owner, because any of the calls may throw.
+  // A pointer owns the buffer, because any of the calls may throw.
   const auto destroy = [this](const VulkanBuffer *buffer) {
     submissions_.retire([this, buffer] {
       memory_.destroy(*buffer);

@@ -221,7 +221,7 @@ void VulkanDevice::check_host_image(std::string_view pass_name, const VulkanFram
 void VulkanDevice::prepare_lookups(const VulkanFramebuffer &framebuffer, const PassActions &actions,
                                    const PassTextures &used)
 {
-  // Those that are looked up while they are drawn into are copied first.
+  // Textures that are looked up while they are drawn into are copied first.
   list_.copied.clear();
   for (const VulkanAttachment &color : framebuffer.colors) {
     if (actions.reads_attachments && std::ranges::binary_search(used, color.texture)) {
@@ -345,7 +345,7 @@ void VulkanDevice::set_state(State state)
       throw Error("framebuffer '{}' of the host's image has no depth, which draws test or write", framebuffer.name);
     }
   }
-  // As in OpenGL, depth is written only if it is tested.
+  // Depth is written only if it is tested, as in OpenGL.
   context_->vk.vkCmdSetDepthTestEnable(commands, compare != VK_COMPARE_OP_ALWAYS || is_written ? VK_TRUE : VK_FALSE);
   context_->vk.vkCmdSetDepthWriteEnable(commands, is_written ? VK_TRUE : VK_FALSE);
   context_->vk.vkCmdSetDepthCompareOp(commands, compare);

@@ -212,7 +212,7 @@ void Checker::finish()
   if (is_compiled_ && !has_errors()) {
     const std::size_t compiled = messages_.size();
     link_stages();
-    // Those of one rule at one line stay in the order of the linker.
+    // Messages of one rule at one line stay in the order of the linker.
     std::stable_sort(messages_.begin() + std::ptrdiff_t(compiled), messages_.end(),
                      [](const CheckMessage &a, const CheckMessage &b) {
                        return std::tie(a.file, a.line, a.rule) < std::tie(b.file, b.line, b.rule);

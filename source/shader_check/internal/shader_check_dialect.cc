@@ -34,7 +34,7 @@ constexpr std::array<std::string_view, 10> vulkan_extensions = {"GL_KHR_vulkan_g
                                                                 "GL_EXT_scalar_block_layout",
                                                                 "GL_EXT_samplerless_texture_functions",
                                                                 "GL_EXT_spirv_intrinsics"};
-/** Those that Vulkan's shaders have more often, and OpenGL's may have. */
+/** Extensions that Vulkan's shaders have more often, and OpenGL's may have. */
 constexpr std::array<std::string_view, 4> likely_vulkan_extensions = {
     "GL_EXT_nonuniform_qualifier", "GL_EXT_shader_explicit_arithmetic_types", "GL_EXT_shader_16bit_storage",
     "GL_EXT_shader_8bit_storage"};

@@ -360,7 +360,7 @@ StageSource::StageSource(gpu::ShaderSource source)
 StageSource::StageSource(Stage stage, std::string path, std::string_view text, const std::vector<std::string> &defines,
                          const gpu::ShaderFiles &files, std::span<const std::string> folders)
     : stage_(stage),
-      // As glslc does, so that a file need not ask for the extension.
+      // The same as in glslc: a file need not ask for the extension.
       preamble_("#extension GL_GOOGLE_include_directive : enable\n"),
       name_(name_of(0)),
       includer_(std::make_unique<Includer>(*this, files, folders))

@@ -230,7 +230,7 @@ class SourceLines {
   [[nodiscard]] SourcePosition find_declaration(std::string_view name, std::string_view keyword) const;
   /** The line with \a name as a word in the block or struct that begins at \a owner; \a owner if there is none. */
   [[nodiscard]] SourcePosition find_member(SourcePosition owner, std::string_view name) const;
-  /** As find_declaration(); empty if no line has \a name. */
+  /** The same as find_declaration(); empty if no line has \a name. */
   [[nodiscard]] std::optional<SourcePosition> find_name(std::string_view name, std::string_view keyword) const;
 
  private:

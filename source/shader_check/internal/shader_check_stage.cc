@@ -101,7 +101,7 @@ struct SpirvModule {
     std::uint64_t bits;
   };
   std::vector<SpecConstant> spec_constants;
-  /** Those of vectors, by id. */
+  /** The ids of vectors' components, by the vector's id. */
   std::map<std::uint32_t, std::vector<std::uint32_t>> constituents;
   /** Values of LocalSize, or ids of LocalSizeId. */
   std::vector<std::uint32_t> local_size;

@@ -28,7 +28,7 @@ using shared::vec4;
 
 using std::numbers::pi;
 
-/** As the engine's programs have it. */
+/** The same as in the engine's programs. */
 LobeAlbedo albedo_of(float alpha, float cosine)
 {
   return shared::lobe_albedo(measure::multiscatter_texel(double(alpha), double(cosine)), alpha, cosine);

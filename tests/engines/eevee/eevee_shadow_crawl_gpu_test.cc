@@ -86,7 +86,7 @@ TEST_F(ShadowCrawlGpuTest, SmallerMapsFlickerNoMoreThanLargerOnes)
   std::uint64_t textures = 0;
   const double large = flicker({}, textures);
   EXPECT_EQ(textures, 0U);
-  // As `gnomon render` has them for one sample.
+  // `gnomon render` has these values for one sample.
   const double small = flicker({.cube_size_px = 768, .map_size_px = 1024, .can_have_short_maps = true}, textures);
   EXPECT_EQ(textures, 0U);
   RecordProperty("large", std::to_string(large));

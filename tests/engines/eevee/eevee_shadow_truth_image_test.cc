@@ -49,7 +49,7 @@ double caster_distance(const reference::Tracer &tracer, const reference::Receive
 enum class Contacts {
   NotCounted,
   Counted,
-  /** Those nearer than half a texel are not compared. */
+  /** Receivers nearer than half a texel are not compared. */
   CountedWithoutJoints,
 };
 

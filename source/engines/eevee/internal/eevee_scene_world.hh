@@ -111,7 +111,7 @@ class SceneWorld {
   gpu::Buffer block_;
   /** Prefiltered levels for specular reflection. Empty without specular materials. */
   gpu::Texture levels_;
-  /** Those whose weights the first level has. */
+  /** The directions whose weights the first level has. */
   RestDirections rest_;
   gpu::Sampler sampler_;
   gpu::Texture picture_;

@@ -482,7 +482,7 @@ void WorldOcclusion::fill(Box &box)
   for (Probe *probe : box.probes) {
     probe->used = update_count_;
   }
-  // Those of other views, which other viewports have, or to which a camera may return.
+  // Probes of other views are kept: other viewports have them, or a camera may return to them.
   constexpr std::size_t kept_max = std::size_t(16) * WORLD_PROBE_MAX;
   if (probes_.size() <= kept_max) {
     probes.merge(probes_);

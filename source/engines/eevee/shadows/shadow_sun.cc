@@ -120,7 +120,7 @@ class SunTechnique final : public MapTechnique {
       layers.tilts.emplace_back(-fit.slope * glm::dvec2(fit.max - fit.min));
     }
     if (!layers.near_far.empty()) {
-      // Those of the last map, which contains all visible receivers, between its corners.
+      // Depths of the last map, which contains all visible receivers, between its corners.
       const glm::vec2 tilt = layers.tilts.back();
       const glm::vec2 rise = glm::max(tilt, glm::vec2(0.0F));
       const glm::vec2 fall = glm::min(tilt, glm::vec2(0.0F));

@@ -117,7 +117,7 @@ struct SliceRun {
   /** Empty: its limits are reversed. */
   SunSlice slice{.min = glm::dvec2(unbounded), .max = glm::dvec2(-unbounded)};
 };
-/** Those of the ranges first to end - 1, at [first][end]. */
+/** Runs of the ranges first to end - 1, at [first][end]. */
 using SliceRuns = std::vector<std::array<SliceRun, range_count + 1>>;
 
 SliceRuns slice_runs(const VisibleRanges &ranges, const SliceConditions &conditions, const ErrorsBehind &errors_behind)
