@@ -28,7 +28,7 @@ inline constexpr const char *planned_file_metadata = "gnomon:plan_file";
 struct WorkPart {
   /** Index of WorkPlan::scenes. */
   std::size_t scene = 0;
-  /** The value of `--frames` with `--step`; empty: one picture without an animation. Several frames are whole pictures. */
+  /** The values of `--frames` and `--step`; empty: one picture without animation. Several frames are whole pictures. */
   std::string frames{};
   /** The value of `--tile`; empty: all rows. */
   std::string tile{};

@@ -46,8 +46,8 @@ enum class Composition {
   /** Replaces colour, alpha and, with Target::depth, depth. Pixels without a surface get the host's farthest depth. */
   Replace,
   /**
-   * The same as Replace, but the colour is not multiplied by alpha, as PNG files store it. Exposure and view transform apply to
-   * the colour of the surfaces that cover a part of the pixel.
+   * The same as Replace, but the colour is not multiplied by alpha, as PNG files store it. Exposure and view transform
+   * apply to the colour of the surfaces that cover a part of the pixel.
    */
   ReplaceStraight,
   /**

@@ -196,8 +196,8 @@ struct ProgramCheck {
 };
 
 /**
- * The same as check_shader(), for shaders that were not written for Gnomon: glslang itself reads includes and conditions, and
- * rules that only Gnomon's own shaders need are off.
+ * The same as check_shader(), for shaders that were not written for Gnomon: glslang itself reads includes and
+ * conditions, and rules that only Gnomon's own shaders need are off.
  */
 [[nodiscard]] ProgramCheck check_program(const Program &program, const gpu::ShaderFiles &files,
                                          const ProgramOptions &options);

@@ -112,8 +112,8 @@ TEST(AnisotropicGgxLobe, IsReciprocalAndFiniteAtTheEnds)
   }
 }
 
-/** The same as GgxDistribution.ProjectsToOne. Over slopes r (α_x cos φ, α_y sin φ) with r² = u / (1 - u), the integrand is
- * constant. */
+/** The same as GgxDistribution.ProjectsToOne. Over slopes r (α_x cos φ, α_y sin φ) with r² = u / (1 - u), the integrand
+ * is constant. */
 TEST(AnisotropicGgxLobe, DistributionProjectsToOne)
 {
   for (const vec2 alphas : {vec2(1.0F, 0.01F), vec2(0.3F, 0.1F)}) {

@@ -83,11 +83,11 @@ class SceneRenderer {
    */
   bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target = {});
   /**
-   * The same as draw_sample, within a time: the first call after an edit or a change of the camera draws a whole picture, in a
-   * lower resolution and with smaller shadows if the budget requires it; later calls draw parts of samples, or several
-   * samples. The complete picture is bit for bit that of draw_sample. Syncs if necessary, and waits for the device. Use
-   * it on the device's thread, without a recording. \a budget_seconds: \see BudgetedPicture::draw \return whether the
-   * picture is complete
+   * The same as draw_sample, within a time: the first call after an edit or a change of the camera draws a whole
+   * picture, in a lower resolution and with smaller shadows if the budget requires it; later calls draw parts of
+   * samples, or several samples. The complete picture is bit for bit that of draw_sample. Syncs if necessary, and waits
+   * for the device. Use it on the device's thread, without a recording. \a budget_seconds: \see BudgetedPicture::draw
+   * \return whether the picture is complete
    */
   bool draw_within(double budget_seconds, const scene::PlacedCamera &camera, const draw::Target &target = {});
   /** Write the picture of the last draw_within to \a target. \throws gpu::Error, also if there is none */
