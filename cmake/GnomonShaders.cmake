@@ -1,14 +1,15 @@
 # gnomon_check_shaders(TARGET NAME FILES FILE... [SHADER_TARGET TARGET] [INCLUDE_FOLDERS FOLDER...] [DEFINES NAME[=VALUE]...]
 #                      [OPTIONS OPTION...] [OUTPUT_FOLDER FOLDER] [STRUCTS HEADER:NAME[=BLOCK[.MEMBER]]...])
 #
-# Checks shaders by `gnomon shaders check` at build time: once, and again when a shader or a file that it includes has changed. An error
-# fails the build with file and line.
+# Checks shaders by `gnomon shaders check` at build time: once, and again when a shader, a file that it includes, or the program
+# gnomon has changed. An error fails the build with file and line. Generator expressions are refused.
 #
 # TARGET: a target of the project, which then depends on the check, or the name of a new one that is a part of `all`.
 # FILES: files whose names differ in the stage only are one program. Paths are relative to the current source folder.
 # SHADER_TARGET: vulkan1.0 to vulkan1.3, opengl, opengl-spirv, es; by default as each program says.
 # OPTIONS: others of `gnomon shaders check`, such as -Werror.
-# OUTPUT_FOLDER: gets NAME.spv for each file, for targets with SPIR-V.
+# OUTPUT_FOLDER: gets NAME.STAGE.spv for each file, for targets with SPIR-V. Relative to the current build folder. Two files of one name need
+# two folders.
 # STRUCTS: C++ structs as TARGET, a library or program, includes them: it does not compile where one has another layout than its block.
 function(gnomon_check_shaders)
   cmake_parse_arguments(PARSE_ARGV 0 CHECK "" "TARGET;SHADER_TARGET;OUTPUT_FOLDER" "FILES;INCLUDE_FOLDERS;DEFINES;OPTIONS;STRUCTS")
@@ -16,7 +17,12 @@ function(gnomon_check_shaders)
     message(FATAL_ERROR "gnomon_check_shaders: TARGET and FILES are needed; unknown: '${CHECK_UNPARSED_ARGUMENTS}'; without a value: "
       "'${CHECK_KEYWORDS_MISSING_VALUES}'")
   endif()
-  find_program(GNOMON_PROGRAM gnomon HINTS ${GNOMON_PROGRAM_FOLDER} REQUIRED)
+  if("${ARGN}" MATCHES "\\$<")
+    message(FATAL_ERROR "gnomon_check_shaders: generator expressions are not evaluated: '${ARGN}'")
+  endif()
+  # The program of the package that was found comes first, also where another one was found before.
+  find_program(CHECKER gnomon PATHS ${GNOMON_PROGRAM_FOLDER} NO_DEFAULT_PATH NO_CACHE)
+  find_program(CHECKER gnomon NO_CACHE REQUIRED)
   set(SOURCE_OPTIONS "")
   if(CHECK_SHADER_TARGET)
     list(APPEND SOURCE_OPTIONS --target ${CHECK_SHADER_TARGET})
@@ -64,9 +70,18 @@ function(gnomon_check_shaders)
         cmake_path(GET FILE FILENAME FILE_NAME)
         list(APPEND SPIRV ${CHECK_OUTPUT_FOLDER}/${FILE_NAME}.spv)
       endforeach()
+      # Ninja could not read its build file again after two rules for one file.
+      get_property(WRITTEN GLOBAL PROPERTY GNOMON_SPIRV_FILES)
+      foreach(FILE IN LISTS SPIRV)
+        if(FILE IN_LIST WRITTEN)
+          message(FATAL_ERROR "gnomon_check_shaders: ${FILE} is written twice; give the shaders of one name other folders by OUTPUT_FOLDER")
+        endif()
+        list(APPEND WRITTEN ${FILE})
+      endforeach()
+      set_property(GLOBAL PROPERTY GNOMON_SPIRV_FILES ${WRITTEN})
     endif()
-    add_custom_command(OUTPUT ${STAMP} BYPRODUCTS ${SPIRV} DEPENDS ${FILES_${KEY}} DEPFILE ${STAMP}.d
-      COMMAND ${GNOMON_PROGRAM} shaders check ${FILES_${KEY}} ${OPTIONS} -MD -MF ${STAMP}.d -MT ${STAMP}
+    add_custom_command(OUTPUT ${STAMP} BYPRODUCTS ${SPIRV} DEPENDS ${FILES_${KEY}} ${CHECKER} DEPFILE ${STAMP}.d
+      COMMAND ${CHECKER} shaders check ${FILES_${KEY}} ${OPTIONS} -MD -MF ${STAMP}.d -MT ${STAMP}
       COMMAND ${CMAKE_COMMAND} -E touch ${STAMP}
       COMMENT "Checking shaders of ${NAME}" VERBATIM)
     list(APPEND STAMPS ${STAMP})
@@ -82,7 +97,7 @@ function(gnomon_check_shaders)
     # After the checks, whose messages are those of the shaders, and which find the files that are included.
     set(LAYOUTS ${FOLDER}/layouts.cc)
     add_custom_command(OUTPUT ${LAYOUTS} DEPENDS ${STAMPS}
-      COMMAND ${GNOMON_PROGRAM} shaders layout ${FILES} ${SOURCE_OPTIONS} ${STRUCT_OPTIONS} > ${LAYOUTS}
+      COMMAND ${CHECKER} shaders layout ${FILES} ${SOURCE_OPTIONS} ${STRUCT_OPTIONS} > ${LAYOUTS}
       COMMENT "Writing the layouts of blocks for ${CHECK_TARGET}" VERBATIM)
     target_sources(${CHECK_TARGET} PRIVATE ${LAYOUTS})
     target_include_directories(${CHECK_TARGET} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
