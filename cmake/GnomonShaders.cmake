@@ -21,8 +21,8 @@ function(gnomon_check_shaders)
     message(FATAL_ERROR "gnomon_check_shaders: generator expressions are not evaluated: '${ARGN}'")
   endif()
   # The program of the package that was found comes first, also where another one was found before.
-  find_program(CHECKER gnomon PATHS ${GNOMON_PROGRAM_FOLDER} NO_DEFAULT_PATH NO_CACHE)
-  find_program(CHECKER gnomon NO_CACHE REQUIRED)
+  find_program(GNOMON_CHECK_PROGRAM gnomon PATHS ${GNOMON_PROGRAM_FOLDER} NO_DEFAULT_PATH NO_CACHE)
+  find_program(GNOMON_CHECK_PROGRAM gnomon NO_CACHE REQUIRED)
   set(SOURCE_OPTIONS "")
   if(CHECK_SHADER_TARGET)
     list(APPEND SOURCE_OPTIONS --target ${CHECK_SHADER_TARGET})
@@ -80,8 +80,8 @@ function(gnomon_check_shaders)
       endforeach()
       set_property(GLOBAL PROPERTY GNOMON_SPIRV_FILES ${WRITTEN})
     endif()
-    add_custom_command(OUTPUT ${STAMP} BYPRODUCTS ${SPIRV} DEPENDS ${FILES_${KEY}} ${CHECKER} DEPFILE ${STAMP}.d
-      COMMAND ${CHECKER} shaders check ${FILES_${KEY}} ${OPTIONS} -MD -MF ${STAMP}.d -MT ${STAMP}
+    add_custom_command(OUTPUT ${STAMP} BYPRODUCTS ${SPIRV} DEPENDS ${FILES_${KEY}} ${GNOMON_CHECK_PROGRAM} DEPFILE ${STAMP}.d
+      COMMAND ${GNOMON_CHECK_PROGRAM} shaders check ${FILES_${KEY}} ${OPTIONS} -MD -MF ${STAMP}.d -MT ${STAMP}
       COMMAND ${CMAKE_COMMAND} -E touch ${STAMP}
       COMMENT "Checking shaders of ${NAME}" VERBATIM)
     list(APPEND STAMPS ${STAMP})
@@ -97,7 +97,7 @@ function(gnomon_check_shaders)
     # After the checks, whose messages are those of the shaders, and which find the files that are included.
     set(LAYOUTS ${FOLDER}/layouts.cc)
     add_custom_command(OUTPUT ${LAYOUTS} DEPENDS ${STAMPS}
-      COMMAND ${CHECKER} shaders layout ${FILES} ${SOURCE_OPTIONS} ${STRUCT_OPTIONS} > ${LAYOUTS}
+      COMMAND ${GNOMON_CHECK_PROGRAM} shaders layout ${FILES} ${SOURCE_OPTIONS} ${STRUCT_OPTIONS} > ${LAYOUTS}
       COMMENT "Writing the layouts of blocks for ${CHECK_TARGET}" VERBATIM)
     target_sources(${CHECK_TARGET} PRIVATE ${LAYOUTS})
     target_include_directories(${CHECK_TARGET} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

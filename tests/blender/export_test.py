@@ -601,7 +601,7 @@ class Objects(ExportTest):
         file = File()
         self.assertEqual([len(each['channels']) for each in file.json['animations']], [3])
         self.assertIn("light 'lamp': its animation is not written", file.report)
-        # Strips, of which one moves what another moves.
+        # The same actions, as strips.
         for i in range(3):
             data = bpy.data.objects[f'box{i}'].animation_data
             action = data.action

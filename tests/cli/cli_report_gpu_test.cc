@@ -81,7 +81,7 @@ TEST_F(CliReportTest, ContinuesAnInterruptedRun)
 {
   ASSERT_EQ(report("--rounds 2").status, 0);
   json before = report_json();
-  // The run was interrupted before the second technique of the second round.
+  // The report becomes that of a run that was interrupted before the second technique of the second round.
   json &technique = before.at("scenes").at(0).at("techniques").at(1);
   technique.at("step_seconds").erase(1);
   for (json &picture : technique.at("pictures")) {
